@@ -55,8 +55,7 @@ AccelerationAdjoint::AccelerationAdjoint(const Mechanism& mechanism, const OdeFo
   placed_ = any(true);
   if (at_once() == 0) return;
   numbers_ = make_number_slopes(mechanism, placed_);
-  slopes_.setZero(numbers_->size());
-  mixed_slopes_ = slopes_;
+  mixed_numbers_ = make_number_slopes(mechanism, placed_);
 }
 
 Index AccelerationAdjoint::at_once() const {
@@ -64,18 +63,19 @@ Index AccelerationAdjoint::at_once() const {
                        [](const OtherParameter& other) { return other.numbers.size() > 0; });
 }
 
-void AccelerationAdjoint::finish(VectorXd& by_parameters) const {
+void AccelerationAdjoint::finish(VectorXd& by_parameters) {
   if (!numbers_) return;
   // A sweep takes Q_θ of dampers times its direction of q: of D_c L*_θ that is none of S.
-  VectorXd all = mixed_slopes_;
+  VectorXd all = VectorXd::Zero(numbers_->size());
+  mixed_numbers_->finish(all);
   for (const Index i : numbers_->without_potential()) all[i] = 0;
-  all += slopes_;
+  numbers_->finish(all);
   for (std::size_t j = 0; j < others_.size(); ++j)
     if (const VectorXd& numbers = others_[j].numbers; numbers.size() > 0)
       by_parameters[static_cast<Index>(j)] += numbers.dot(all);
 }
 
-/// slopes −= S_θ of all numbers, without what forces without potential have but νᵀQ_θ.
+/// −S_θ of all numbers, without what forces without potential have but νᵀQ_θ.
 void AccelerationAdjoint::add_numbers(const AdjointState& at) {
   const double *q = at.q.data(), *u = at.p.data(), *udot = at.slope.data(),
                *lambda = at.sigma.data();
@@ -83,15 +83,14 @@ void AccelerationAdjoint::add_numbers(const AdjointState& at) {
   for (const double sign : {1.0, -1.0}) {
     shifted_ = at.p + sign * s * nu_;
     sigma_ = sign * s * mu_;
-    numbers_->add(-sign / (2 * s), {at.t, q, shifted_.data(), sigma_.data(), u, udot, lambda},
-                  mixed_slopes_);
+    mixed_numbers_->add(-sign / (2 * s),
+                        {at.t, q, shifted_.data(), sigma_.data(), u, udot, lambda});
   }
-  numbers_->add(1, {at.t, q, u, nullptr, nu_.data(), nullptr, nullptr}, slopes_);
+  numbers_->add(1, {at.t, q, u, nullptr, nu_.data(), nullptr, nullptr});
   if (!placed_) return;
   if (alpha_ != 0)
-    numbers_->add_loop_rates(-2 * alpha_, {at.t, q, u, nullptr, nullptr, nullptr, mu_.data()},
-                             slopes_);
-  if (beta_ != 0) numbers_->add_loops(-beta_ * beta_, at.t, q, mu_.data(), slopes_);
+    numbers_->add_loop_rates(-2 * alpha_, {at.t, q, u, nullptr, nullptr, nullptr, mu_.data()});
+  if (beta_ != 0) numbers_->add_loops(-beta_ * beta_, at.t, q, mu_.data());
 }
 
 bool AccelerationAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& product,

@@ -57,15 +57,18 @@ class AccelerationAdjoint final : public FormAdjoint {
   /// y(0) = (q, u) has no inertias in it.
   void start(double, const Eigen::VectorXd&, const Eigen::VectorXd&,
              const Eigen::VectorXd&) override {}
-  void finish(Eigen::VectorXd& by_parameters) const override;
+  void finish(Eigen::VectorXd& by_parameters) override;
 
   Eigen::Index at_once() const override;
   bool needs_solutions() const override { return true; }
+  bool needs_rates() const override { return true; }
+  bool solved(const AdjointState& at) const override { return at.slope.size() == nv_; }
+  const std::vector<double>& swept_rates() const override { return none_; }
   void by_rows() override { corrections_.system().by_matrix(); }
 
  private:
   void add_numbers(const AdjointState& at);
-  CorrectionAdjoint::Numbers numbers() { return {numbers_.get(), placed_, &slopes_}; }
+  CorrectionAdjoint::Numbers numbers() { return {numbers_.get(), placed_}; }
 
   const Mechanism& mechanism_;
   const std::vector<OtherParameter>& others_;
@@ -75,10 +78,11 @@ class AccelerationAdjoint final : public FormAdjoint {
   TransposedForces forces_;
   MixedRates mixed_;
   CorrectionAdjoint corrections_;
-  std::unique_ptr<NumberSlopes> numbers_;  ///< null: no θ is taken so
-  bool placed_ = false;                    ///< some θ changes places
-  bool any_rows_ = false;                  ///< some θ is taken from rows of other mechanisms
-  Eigen::VectorXd slopes_, mixed_slopes_;  ///< by numbers, so far; of D_c D_(0,ν,μ) L*_θ apart
+  std::vector<double> none_;                     ///< states have their u
+  std::unique_ptr<NumberSlopes> numbers_;        ///< null: no θ is taken so
+  std::unique_ptr<NumberSlopes> mixed_numbers_;  ///< D_c D_(0,ν,μ) L*_θ
+  bool placed_ = false;                          ///< some θ changes places
+  bool any_rows_ = false;                        ///< some θ is taken from rows of other mechanisms
   Eigen::VectorXd nu_, mu_, plain_, by_q_, by_u_, shifted_, sigma_, x_, weights_;
 };
 

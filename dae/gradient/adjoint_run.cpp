@@ -57,6 +57,7 @@ bool AdjointRun::end(double t, const double* y) {
   w_.head(by_u_.size()) = by_u_;
   ++products_;
   if (!adjoint_.rates(at, w_, lambda_, by_parameters_)) return fail_at(t, dependent_loops);
+  u_behind_ = at.u;
   lambda_.head(by_q_.size()) += by_q_;
   return true;
 }
@@ -70,7 +71,7 @@ bool AdjointRun::after_step(double t, const VectorXd& y, const double* behind) {
            adjoint_.correction(t, y.head(n), lambda_, by_parameters_);
   };
   if (behind) {
-    const AdjointState at{t, Map<const VectorXd>(behind, n), y.tail(n), {}, {}};
+    const AdjointState at{t, Map<const VectorXd>(behind, n), y.tail(n), u_behind_, {}};
     if (adjoint_.gauge(at, lambda_, by_parameters_))
       return corrected() || fail_at(t, dependent_loops);
   }
@@ -109,8 +110,13 @@ bool AdjointRun::stages_again(const RecordedRun::Step& step, const double* start
 bool AdjointRun::times_slopes(std::size_t stage) {
   AdjointState& at = stages_[stage];
   ++products_;
-  if (adjoint_.rates(at, w_, product_, by_parameters_)) return true;
-  if (at.u.size() == 0) {  // kept without its solution, which the sweeps did not need
+  if (adjoint_.rates(at, w_, product_, by_parameters_)) {
+    if (stage == 0)
+      u_behind_ =
+          at.u.size() > 0 ? at.u : Map<const VectorXd>(adjoint_.swept_rates().data(), at.p.size());
+    return true;
+  }
+  if (!adjoint_.solved(at)) {  // kept without its solution, which the sweeps did not need
     y_.resize(form_.size());
     y_ << at.q, at.p;
     if (!rhs(at.t, y_.data(), k_.col(0).data(), at)) return false;
@@ -126,7 +132,8 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
                       !run.steps()[number - 1].altered && run.has_stages(number - 1);
   const double* first = is_end ? run.reached(number - 1) : run.start(number);
   const auto s = static_cast<Index>(stages_.size());
-  const bool kept = run.has_stages(number) && !integral_ && !adjoint_.needs_solutions();
+  const bool kept = run.has_stages(number) && !adjoint_.needs_solutions() &&
+                    (run.rates(number, 0) || !(integral_ || adjoint_.needs_rates()));
   if (kept) {
     const Index n = form_.size() / 2;
     for (std::size_t i = 0; i < stages_.size(); ++i) {
@@ -135,7 +142,7 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
       const double* y = i == 0 ? first : run.stage(number, i);
       at.q = Map<const VectorXd>(y, n);
       at.p = Map<const VectorXd>(y + n, n);
-      at.u.resize(0);
+      at.u = Map<const VectorXd>(run.rates(number, i), run.rates(number, i) ? n : 0);
       at.sigma.resize(0);
     }
     if (form_.has_after_step()) {
@@ -166,6 +173,7 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
       by_parameters_ += weight * by_theta_;
       w_.head(by_u_.size()) += weight * by_u_;
     }
+    if (i == 0) u_behind_.resize(0);
     if (w_.isZero(0))  // a stage that serves the error alone
       product_.setZero(w_.size());
     else if (!times_slopes(at))
@@ -177,7 +185,7 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
     ahead_ = m_.col(0);
     m_.col(0).setZero();
   }
-  lambda_ += m_.rowwise().sum();
+  for (Index i = 0; i < s; ++i) lambda_ += m_.col(i);
   return true;
 }
 

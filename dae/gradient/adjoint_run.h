@@ -62,8 +62,9 @@ class AdjointRun {
   long products_ = 0;
   std::string failure_;
   Eigen::VectorXd lambda_, by_parameters_, y_, w_, product_, by_q_, by_u_, by_theta_;
-  Eigen::VectorXd ahead_;  ///< m_1 of the step behind, where it is of the end of this one
-  Eigen::MatrixXd k_, m_;  ///< size of y × stages
+  Eigen::VectorXd u_behind_;  ///< u where the step behind begins; empty: not known
+  Eigen::VectorXd ahead_;     ///< m_1 of the step behind, where it is of the end of this one
+  Eigen::MatrixXd k_, m_;     ///< size of y × stages
   std::vector<AdjointState> stages_;  ///< of the step under way
 };
 

@@ -98,13 +98,10 @@ bool CorrectionAdjoint::position(double t, const VectorXd& q, const Numbers& num
   lambda.head(n) -= force_ + along(t, q, delta_, nu_, a_, b_);
   if (driven_) lambda.head(n) += along(t, q, still_, none_, a_, b_);
   if (numbers.of) {
-    VectorXd& slopes = *numbers.slopes;
-    numbers.of->add(-1, {t, q.data(), delta_.data(), nu_.data(), nullptr, a_.data(), b_.data()},
-                    slopes);
-    if (numbers.placed) numbers.of->add_loops(-1, t, q.data(), b_.data(), slopes);
+    numbers.of->add(-1, {t, q.data(), delta_.data(), nu_.data(), nullptr, a_.data(), b_.data()});
+    if (numbers.placed) numbers.of->add_loops(-1, t, q.data(), b_.data());
     if (driven_)
-      numbers.of->add(1, {t, q.data(), still_.data(), nullptr, nullptr, a_.data(), b_.data()},
-                      slopes);
+      numbers.of->add(1, {t, q.data(), still_.data(), nullptr, nullptr, a_.data(), b_.data()});
   }
   CorrectionRows rows{rows_};
   rows.t = t;
@@ -127,10 +124,8 @@ bool CorrectionAdjoint::velocities(double t, const VectorXd& q, const VectorXd& 
   lambda.head(n) += along(t, q, u, none_, a_, none_);
   lambda.head(n) -= along(t, q, v, nu_, a_, b_);
   if (numbers.of) {
-    numbers.of->add(1, {t, q.data(), u.data(), nullptr, nullptr, a_.data(), nullptr},
-                    *numbers.slopes);
-    numbers.of->add(-1, {t, q.data(), v.data(), nu_.data(), nullptr, a_.data(), b_.data()},
-                    *numbers.slopes);
+    numbers.of->add(1, {t, q.data(), u.data(), nullptr, nullptr, a_.data(), nullptr});
+    numbers.of->add(-1, {t, q.data(), v.data(), nu_.data(), nullptr, a_.data(), b_.data()});
   }
   VelocityRows rows{rows_};
   rows.t = t;

@@ -24,11 +24,10 @@ class CorrectionAdjoint {
   CorrectionAdjoint(const Mechanism& mechanism, const std::vector<OtherParameter>& others,
                     const TransposedForces& forces);
 
-  /// Where θ of numbers are summed; null: none is. `placed`: some change places.
+  /// Where θ of numbers are added; null: none is. `placed`: some change places.
   struct Numbers {
     NumberSlopes* of = nullptr;
     bool placed = false;
-    Eigen::VectorXd* slopes = nullptr;
   };
   /// λ (of q, then p or u) behind the correction of q at t [s] to λ before it; `repeated`: until
   /// consistent, as the form `projected` does. False where the matrix is singular. Of each

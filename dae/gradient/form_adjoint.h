@@ -4,12 +4,13 @@
 // stage_adjoint.h; on accelerations: acceleration_adjoint.h.
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace momenta {
 
 /// A state at which f is differentiated: its time [s], q (nq), the second half p of y (nv; of forms
-/// on accelerations that is u), u (nv), σ or λ (m), and the second half of ẏ (nv). The last three
-/// are empty where they are not known.
+/// on accelerations that is u), u (nv), σ or λ (m), and the second half of ẏ (nv). Each of the last
+/// three is empty where it is not known.
 struct AdjointState {
   double t = 0;
   Eigen::VectorXd q, p, u, sigma;
@@ -36,12 +37,18 @@ class FormAdjoint {
   virtual void start(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                      const Eigen::VectorXd& lambda) = 0;
   /// What numbers have had so far is added, once, when the way back is over.
-  virtual void finish(Eigen::VectorXd& by_parameters) const = 0;
+  virtual void finish(Eigen::VectorXd& by_parameters) = 0;
 
   /// How many parameters are taken by number_slopes.h.
   virtual Eigen::Index at_once() const = 0;
-  /// Whether states must have their u, multipliers and slopes.
+  /// Whether states must have their u, multipliers and slopes, or u alone; else the sweeps find
+  /// them, and where they do not carry a state, products without u and multipliers are false.
   virtual bool needs_solutions() const = 0;
+  virtual bool needs_rates() const = 0;
+  /// Whether a state has both.
+  virtual bool solved(const AdjointState& at) const = 0;
+  /// u (nv) at the state of the last rates(). @pre that state has no u
+  virtual const std::vector<double>& swept_rates() const = 0;
   /// By matrices alone from now on: where rows of Φ are redundant the only way.
   virtual void by_rows() = 0;
 };

@@ -191,7 +191,8 @@ void Asked::adjoint() {
   const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
-  RecordedRun record(form, s.step, s.end_time, butcher_tableau(s.integrator).c);
+  RecordedRun record(form, s.step, s.end_time, butcher_tableau(s.integrator).c,
+                     !stages->needs_solutions() && (request.integral || stages->needs_rates()));
   Observer observer;
   bool ended = false;
   observer.step = [&](double t0, double t1, const Interpolant&) {

@@ -10,8 +10,9 @@ class KineticRatesOf final : public KineticRates {
   explicit KineticRatesOf(Model<Space> model)
       : model_(std::move(model)), sweep_(make_kinetic_sweep(model_)) {}
 
-  void along(double t, const double* q, const double* u, const double* v, double* result) override {
-    sweep_->along(t, q, u, v, result);
+  void along(double t, const double* q, const double* u, const double* v, double* rates,
+             double* momenta) override {
+    sweep_->along(t, q, u, v, rates, momenta);
   }
 
  private:

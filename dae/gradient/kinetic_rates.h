@@ -1,7 +1,7 @@
 #pragma once
-// The derivative of ∂T/∂q, at constant rates, along rates: D_v T_q at (q, u), with (8) in dual
-// numbers of one direction and neither forces nor σ. What the transposed derivative of p = M u asks
-// for.
+// The derivatives of ∂T/∂q, at constant q, and of p = M u along rates: D_v T_q and M v at (q, u),
+// with (8) in dual numbers of one direction and neither forces nor σ. What the transposed
+// derivative of p = M u asks for.
 
 #include <momenta/dae/mechanism.h>
 
@@ -13,9 +13,9 @@ namespace momenta {
 class KineticRates {
  public:
   virtual ~KineticRates() = default;
-  /// D_v T_q (nv) at t [s], q, u along v (nv each). O(bodies)
-  virtual void along(double t, const double* q, const double* u, const double* v,
-                     double* result) = 0;
+  /// D_v T_q and M v (nv each) at t [s], q, u along v (nv each). O(bodies)
+  virtual void along(double t, const double* q, const double* u, const double* v, double* rates,
+                     double* momenta) = 0;
 };
 
 /// @pre bodies, no quaternions

@@ -93,16 +93,14 @@ class NumberSlopesOf final : public NumberSlopes {
     return all;
   }
 
-  void add(double factor, const NumberSweep::Motion& at, VectorXd& slopes) override {
-    sweep_->add(factor, at, slopes.data());
+  void add(double factor, const NumberSweep::Motion& at) override { sweep_->add(factor, at); }
+  void add_loop_rates(double factor, const NumberSweep::Motion& at) override {
+    sweep_->add_loop_rates(factor, at);
   }
-  void add_loop_rates(double factor, const NumberSweep::Motion& at, VectorXd& slopes) override {
-    sweep_->add_loop_rates(factor, at, slopes.data());
+  void add_loops(double factor, double t, const double* q, const double* nu) override {
+    sweep_->add_loops(factor, t, q, nu);
   }
-  void add_loops(double factor, double t, const double* q, const double* nu,
-                 VectorXd& slopes) override {
-    sweep_->add_loops(factor, t, q, nu, slopes.data());
-  }
+  void finish(VectorXd& slopes) override { sweep_->finish(slopes.data()); }
 
   VectorXd numbers(const Scene& other) const override {
     const Tree tree = build_valid_tree(other);

@@ -51,14 +51,14 @@ class NumberSlopes {
   virtual bool of_places() const = 0;
   /// Where the numbers of dampers and friction stand.
   virtual std::vector<Eigen::Index> without_potential() const = 0;
-  /// slopes (size) += factor D ∂L*/∂number. O(bodies + m)
-  virtual void add(double factor, const NumberSweep::Motion& at, Eigen::VectorXd& slopes) = 0;
+  /// Adds factor D ∂L*/∂number. O(bodies + m)
+  virtual void add(double factor, const NumberSweep::Motion& at) = 0;
   /// The same of σᵀΦ̇ alone.
-  virtual void add_loop_rates(double factor, const NumberSweep::Motion& at,
-                              Eigen::VectorXd& slopes) = 0;
-  /// slopes (size) += factor ∂(νᵀΦ)/∂number at (t, q), ν of m numbers.
-  virtual void add_loops(double factor, double t, const double* q, const double* nu,
-                         Eigen::VectorXd& slopes) = 0;
+  virtual void add_loop_rates(double factor, const NumberSweep::Motion& at) = 0;
+  /// And factor ∂(νᵀΦ)/∂number at (t, q), ν of m numbers.
+  virtual void add_loops(double factor, double t, const double* q, const double* nu) = 0;
+  /// slopes (size) += all that was added since the last call.
+  virtual void finish(Eigen::VectorXd& slopes) = 0;
   /// The numbers of a scene that differs in them alone, places of joints as screws from the own
   /// ones, right to first order; empty where it has others.
   virtual Eigen::VectorXd numbers(const Scene& other) const = 0;

@@ -1,13 +1,14 @@
 #pragma once
 // A form's run whose steps are kept, for a sweep back over them: where each began, how long it was,
 // and, as long as there is memory for them, the states of its stages, which need not be computed
-// again then. The steps are those of the run alone. Memory: a state a stage, up to 1 GB, from there
-// on a state a step, up to 4 GB.
+// again then, with u of (7) there where it is asked for. The steps are those of the run alone.
+// Memory: a state a stage, up to 1 GB, from there on a state a step, up to 4 GB.
 //
 // Stages are told from other evaluations by their times: of a step they are the last s − 1 in a row
 // at t0 + c_i h. Where none are, trials of singular poses lie between.
 
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/gradient/kept_numbers.h>
 #include <momenta/dae/gradient/singular_passages.h>
 
 #include <functional>
@@ -26,19 +27,30 @@ class RecordedRun final : public OdeSystem {
   };
 
   /// `fixed_step`: 0 with error control. `end`: of the run [s]. `c`: the method's abscissas.
-  RecordedRun(OdeForm& form, double fixed_step, double end, std::vector<double> c)
-      : form_(form), fixed_step_(fixed_step), end_(end), c_(std::move(c)), last_(c_.size()) {}
+  /// `with_rates`: u of stages is kept with them.
+  RecordedRun(OdeForm& form, double fixed_step, double end, std::vector<double> c,
+              bool with_rates = false)
+      : form_(form),
+        fixed_step_(fixed_step),
+        end_(end),
+        c_(std::move(c)),
+        with_rates_(with_rates),
+        last_(c_.size()) {}
 
   const std::vector<Step>& steps() const { return steps_; }
   /// The state in which step i began.
-  const double* start(std::size_t i) const { return states_[i].data(); }
+  const double* start(std::size_t i) const { return kept_[i].states; }
   /// Whether the states of its stages are kept too.
-  bool has_stages(std::size_t i) const { return states_[i].size() > width(); }
+  bool has_stages(std::size_t i) const { return kept_[i].has_stages; }
   /// Stage j of step i, 0 its start. @pre has_stages(i)
   const double* stage(std::size_t i, std::size_t j) const { return start(i) + j * width(); }
   /// The state to which the stages of step i led, before what the form does after it. @pre
   /// has_stages(i), has_after_step()
   const double* reached(std::size_t i) const { return stage(i, c_.size()); }
+  /// u of stage j of step i (nv); null: not kept.
+  const double* rates(std::size_t i, std::size_t j) const {
+    return kept_[i].rates ? kept_[i].rates + j * form_.rates().size() : nullptr;
+  }
   /// To be told of each step taken, before the next begins. False where no more can be kept.
   bool keep(double t0, double t1);
   /// When stages came near to a singular pose.
@@ -60,8 +72,10 @@ class RecordedRun final : public OdeSystem {
     evaluated_ = 0;
     form_.begin_step(t, y);
     start_.assign(y, y + width());
+    if (with_rates_) find_first_rates();
+    reset_ = false;
   }
-  bool first_derivative(double* ydot) override { return form_.first_derivative(ydot); }
+  bool first_derivative(double* ydot) override { return reset_ = form_.first_derivative(ydot); }
   SingularityHandling wanted_handling() const override { return form_.wanted_handling(); }
   void set_handling(SingularityHandling handling) override {
     corrected_stages_ = handling == SingularityHandling::position;
@@ -80,16 +94,24 @@ class RecordedRun final : public OdeSystem {
  private:
   std::size_t width() const { return static_cast<std::size_t>(form_.size()); }
   bool lost_at(double t, const char* why);
-  void keep_stages(const Step& step, std::vector<double>& states);
+  void find_first_rates();
+  void keep_rates(std::size_t ago);
+  /// How many evaluations ago the last stage of the step just taken was; −1 where its stages are
+  /// not the last evaluations, or the last but for f at its end.
+  int stages_ago(const Step& step) const;
 
   OdeForm& form_;
   double fixed_step_, end_;
   std::vector<double> c_;
+  bool with_rates_;
   /// The last evaluations, as many as the method has stages, and where the next one goes.
   struct Evaluated {
     double t = 0;
-    std::vector<double> y;
+    std::vector<double> y, u;
   };
+  const Evaluated& evaluated(std::size_t ago) const {
+    return last_[(next_ + 2 * last_.size() - 1 - ago) % last_.size()];
+  }
   std::vector<Evaluated> last_;
   std::size_t next_ = 0, evaluated_ = 0;  ///< of this step
   bool corrected_stages_ = false;
@@ -98,9 +120,17 @@ class RecordedRun final : public OdeSystem {
   SingularPassages passages_;
   std::string lost_;
   std::vector<Step> steps_;
-  std::vector<double> start_;
-  std::vector<std::vector<double>> states_;  ///< by step: start, stages, what they led to
-  std::size_t numbers_ = 0;                  ///< kept
+  std::vector<double> start_, first_rates_;  ///< of this step; rates empty: f is yet to come
+  bool reset_ = false;                       ///< f at its start is the form's own
+  /// Of a step: its start, stages, what they led to; u of its stages, null: not kept.
+  struct Kept {
+    double* states;
+    bool has_stages;
+    double* rates;
+  };
+  std::vector<Kept> kept_;
+  KeptNumbers numbers_;
+  std::size_t count_ = 0;  ///< of numbers kept
 };
 
 }  // namespace momenta

@@ -53,6 +53,7 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
       matrix_(mechanism),
       forces_(mechanism),
       corrections_(mechanism, others, forces_),
+      losses_(make_line_losses(mechanism)),
       gauge_(form.gauge()),
       rows_{{RowPlaces(mechanism)}},
       nv_(mechanism.nv()),
@@ -81,12 +82,14 @@ Index StageAdjoint::at_once() const {
 }
 
 void StageAdjoint::start(double t, const VectorXd& q, const VectorXd& u, const VectorXd& lambda) {
-  if (numbers_)
-    numbers_->add(1, {t, q.data(), u.data(), nullptr, nullptr, lambda.data() + nv_, nullptr},
-                  slopes_at_start_);
+  if (!numbers_) return;
+  numbers_->finish(slopes_);
+  numbers_->add(1, {t, q.data(), u.data(), nullptr, nullptr, lambda.data() + nv_, nullptr});
+  numbers_->finish(slopes_at_start_);
 }
 
-void StageAdjoint::finish(VectorXd& by_parameters) const {
+void StageAdjoint::finish(VectorXd& by_parameters) {
+  if (numbers_) numbers_->finish(slopes_);
   for (std::size_t j = 0; j < others_.size(); ++j) {
     const OtherParameter& other = others_[j];
     if (other.numbers.size() == 0) continue;
@@ -118,6 +121,16 @@ void StageAdjoint::add_by_parameters(const Rows& rows, const VectorXd& x, const 
   momenta::add_by_parameters(others_, rows, x, weights, plain_, sum);
 }
 
+void StageAdjoint::add_by_rows(const AdjointState& at, const VectorXd& weights, bool of_gauge,
+                               VectorXd& sum) {
+  rows_.t = at.t;
+  const VectorXd x = joined(at.q, at.u, at.sigma);
+  if (of_gauge)
+    add_by_parameters(MomentumAndLoopRows{rows_}, x, weights, sum);
+  else
+    add_by_parameters(rows_, x, weights, sum);
+}
+
 bool StageAdjoint::factor(double t, const VectorXd& q) {
   rows_.t = t;
   e_->place(t, q.data());
@@ -137,46 +150,10 @@ VectorXd StageAdjoint::loop_rates(const VectorXd& u) {
   return moved - still;
 }
 
-/// By the sweeps: no matrix, and nothing is allocated unless a θ is taken from rows.
-bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& product,
-                         VectorXd& by_parameters) {
-  const auto a = w.head(nv_), b = w.tail(nv_);
-  along_q_ = -b;
-  along_p_ = a;
-  if (forces_.any()) {
-    still_ = b;
-    forces_.transposed(at.t, at.q, at.u, still_, by_q_, by_u_);
-    along_p_ += by_u_;
-  }
-  SweptTangent& f = *swept_;
-  if (!f(at.t, at.q.data(), at.p.data(), along_q_.data(), along_p_.data())) return false;
-  const Eigen::Map<const VectorXd> du(f.du.data(), nv_), dpdot(f.dpdot.data(), nv_);
-  product.resize(2 * nv_);
-  product.head(nv_) = -dpdot;
-  product.tail(nv_) = du;
-  if (forces_.any()) {
-    // ṗ has Q in it: its derivative along the direction goes, its transposed product comes.
-    still_ = du;
-    forces_.along(at.t, at.q, at.u, along_q_, still_, by_u_);
-    product.head(nv_) += by_q_ + by_u_;
-  }
-  if (numbers_)
-    numbers_->add(-1,
-                  {at.t, at.q.data(), f.u.data(), f.sigma.data(), along_q_.data(), f.du.data(),
-                   f.dsigma.data()},
-                  slopes_);
-  if (!any_rows_) return true;
-  rows_.t = at.t;
-  VectorXd weights(2 * nv_ + m_);
-  weights << -du, -Eigen::Map<const VectorXd>(f.dsigma.data(), m_), b;
-  add_by_parameters(rows_, joined(at.q, at.u, at.sigma), weights, by_parameters);
-  return true;
-}
-
 bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& product,
                          VectorXd& by_parameters) {
   if (swept_ && sweep(at, w, product, by_parameters)) return true;
-  if (at.u.size() == 0 || !factor(at.t, at.q)) return false;
+  if (!solved(at) || !factor(at.t, at.q)) return false;
   const VectorXd b = w.tail(nv_), x = joined(at.q, at.u, at.sigma);
   VectorXd right = -along(static_cast<const MomentumRows&>(rows_), x,
                           joined(-b, VectorXd::Zero(nv_), VectorXd::Zero(m_)), nv_ + m_);
@@ -204,10 +181,8 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
     along_q_ = -b;
     const double* dsigma = mu.data() + nv_;
     numbers_->add(
-        -1, {at.t, at.q.data(), at.u.data(), at.sigma.data(), along_q_.data(), mu.data(), dsigma},
-        slopes_);
-    if (placed_ && rows_.beta != 0)
-      numbers_->add_loops(-rows_.beta, at.t, at.q.data(), dsigma, slopes_);
+        -1, {at.t, at.q.data(), at.u.data(), at.sigma.data(), along_q_.data(), mu.data(), dsigma});
+    if (placed_ && rows_.beta != 0) numbers_->add_loops(-rows_.beta, at.t, at.q.data(), dsigma);
   }
   add_by_parameters(rows_, x, joined(-mu.head(nv_), -mu.tail(m_), b), by_parameters);
   return true;
@@ -215,60 +190,13 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
 
 /// What numbers have of a gauge: c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ).
 void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p) {
-  numbers_->add(c, along_mu, slopes_);
+  numbers_->add(c, along_mu);
   if (!placed_) return;
   NumberSweep::Motion along_p = along_mu;
   along_p.du = of_p;
   along_p.dsigma = nullptr;
-  numbers_->add_loop_rates(-c, along_p, slopes_);
-  if (rows_.beta != 0)
-    numbers_->add_loops(c * rows_.beta, along_mu.t, along_mu.q, along_mu.dsigma, slopes_);
-}
-
-/// p' = c M u − (c − 1) p by the sweeps.
-bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambda,
-                               VectorXd& by_parameters) {
-  const auto of_p = lambda.tail(nv_);
-  along_q_ = of_p;
-  e_->place(at.t, at.q.data());
-  e_->move(along_q_.data());
-  e_->momenta(nullptr, along_p_.data());
-  if (driven_) {
-    e_->move(nullptr);
-    e_->momenta(nullptr, still_.data());
-    along_p_ -= still_;
-  }
-  still_.setZero();
-  SweptTangent& f = *swept_;
-  if (!f(at.t, at.q.data(), at.p.data(), still_.data(), along_p_.data())) return false;
-  const Eigen::Map<const VectorXd> u(f.u.data(), nv_), du(f.du.data(), nv_),
-      dpdot(f.dpdot.data(), nv_);
-  kinetic_->along(at.t, at.q.data(), u.data(), along_q_.data(), rates_.data());
-  rates_ -= dpdot;
-  if (forces_.any()) {
-    along_p_ = du;
-    forces_.along(at.t, at.q, at.u, still_, along_p_, by_u_);
-    rates_ += by_u_;
-  }
-  along_p_ = of_p - du;
-  if (numbers_) {
-    for (double& x : f.dsigma) x = -x;
-    add_gauge(
-        c,
-        {at.t, at.q.data(), f.u.data(), f.sigma.data(), nullptr, along_p_.data(), f.dsigma.data()},
-        of_p.data());
-    for (double& x : f.dsigma) x = -x;
-  }
-  if (any_rows_) {
-    rows_.t = at.t;
-    VectorXd weights(2 * nv_ + m_);
-    weights << c * along_p_, -c * Eigen::Map<const VectorXd>(f.dsigma.data(), m_), -c * of_p;
-    add_by_parameters(MomentumAndLoopRows{rows_}, joined(at.q, at.u, at.sigma), weights,
-                      by_parameters);
-  }
-  lambda.head(nv_) += c * rates_;
-  lambda.tail(nv_) -= c * along_p_;
-  return true;
+  numbers_->add_loop_rates(-c, along_p);
+  if (rows_.beta != 0) numbers_->add_loops(c * rows_.beta, along_mu.t, along_mu.q, along_mu.dsigma);
 }
 
 bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_parameters) {
@@ -276,7 +204,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   const double c = gauge_.kind == Gauge::Kind::flip ? 2 : gauge_.kind == Gauge::Kind::reset ? 1 : 0;
   if (c == 0) return true;
   if (swept_ && sweep_gauge(at, c, lambda, by_parameters)) return true;
-  if (at.u.size() == 0 || !factor(at.t, at.q)) return false;
+  if (!solved(at) || !factor(at.t, at.q)) return false;
   const VectorXd of_p = lambda.tail(nv_), x = joined(at.q, at.u, at.sigma);
   VectorXd right = VectorXd::Zero(nv_ + m_);
   right.tail(m_) = loop_rates(of_p);
@@ -305,8 +233,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
 
 bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
                               VectorXd& by_parameters) {
-  return corrections_.positions(t, q, false, {numbers_.get(), placed_, &slopes_}, lambda,
-                                by_parameters);
+  return corrections_.positions(t, q, false, {numbers_.get(), placed_}, lambda, by_parameters);
 }
 
 }  // namespace momenta

@@ -15,7 +15,8 @@
 //   f_yᵀ w = (−δr, δu),        f_θᵀ w = bᵀ r3_θ − δuᵀ r1_θ − δσᵀ r2_θ                           (5)
 //
 // with the rows of momentum_rows.h at constant q, u, σ. What has no potential is added:
-//   forces Q(q, u, t): a + Q_uᵀ b in the place of a, and Q_qᵀ b  (transposed_forces.h)
+//   forces Q(q, u, t): a + Q_uᵀ b in the place of a, and Q_qᵀ b  (transposed_forces.h; along lines
+//     of their own line_losses.h)
 //   leak and β: with k = κ + β, −k Φ_q b in the second row of (2), −k Φ_qᵀ δσ in the result, and
 //     L*_q less κ Φ_qᵀσ. The derivative of Φ_qᵀσ by q is symmetric as well.
 //
@@ -40,6 +41,7 @@
 #include <momenta/dae/gradient/correction_adjoint.h>
 #include <momenta/dae/gradient/form_adjoint.h>
 #include <momenta/dae/gradient/kinetic_rates.h>
+#include <momenta/dae/gradient/line_losses.h>
 #include <momenta/dae/gradient/momentum_rows.h>
 #include <momenta/dae/gradient/number_slopes.h>
 #include <momenta/dae/gradient/row_derivatives.h>
@@ -63,7 +65,8 @@ class StageAdjoint final : public FormAdjoint {
   bool rates(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
              Eigen::VectorXd& by_parameters) override;
 
-  /// λ behind a reset or flip to λ before it, at the state where (7) was solved for it.
+  /// λ behind a reset or flip to λ before it, at the state where (7) was solved for it. Where u is
+  /// known the sweeps need not find it first.
   bool gauge(const AdjointState& at, Eigen::VectorXd& lambda,
              Eigen::VectorXd& by_parameters) override;
   /// λ behind a correction of q to λ before it; q (nq) before it.
@@ -74,15 +77,19 @@ class StageAdjoint final : public FormAdjoint {
   void start(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
              const Eigen::VectorXd& lambda) override;
   /// What numbers have had so far is added, once, when the way back is over.
-  void finish(Eigen::VectorXd& by_parameters) const override;
+  void finish(Eigen::VectorXd& by_parameters) override;
 
   /// How many parameters are taken by number_slopes.h.
   Eigen::Index at_once() const override;
-  /// Whether states must have their u and σ; else the sweeps find them, and where they do not
-  /// carry a state, products without them are false.
-  bool needs_solutions() const override { return !swept_ || forces_.any() || any_rows_; }
+  bool needs_solutions() const override { return !swept_ || any_rows_; }
+  bool needs_rates() const override { return losses_ ? losses_->at_state() : forces_.any(); }
+  bool solved(const AdjointState& at) const override {
+    return at.u.size() == nv_ && at.sigma.size() == m_;
+  }
   /// Whether the sweeps are differentiated; else rows.
   bool swept() const { return swept_ != nullptr; }
+  /// u (nv) at the state of the last rates(). @pre swept(), and that state has no u
+  const std::vector<double>& swept_rates() const override { return swept_->u; }
   /// Rows and K alone from now on: the slow way, and where rows of Φ are redundant the only one:
   /// there the sweeps let them fade.
   void by_rows() override {
@@ -98,6 +105,9 @@ class StageAdjoint final : public FormAdjoint {
   template <class Rows>
   Eigen::VectorXd along(const Rows& rows, const Eigen::VectorXd& x, const Eigen::VectorXd& dx,
                         Eigen::Index size);
+  /// sum_j += weights · ∂(r1, r2, r3)/∂θ_j, or of r1, r2 and Φ_qᵀσ.
+  void add_by_rows(const AdjointState& at, const Eigen::VectorXd& weights, bool of_gauge,
+                   Eigen::VectorXd& sum);
   template <class Rows>
   void add_by_parameters(const Rows& rows, const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
                          Eigen::VectorXd& sum);
@@ -112,6 +122,7 @@ class StageAdjoint final : public FormAdjoint {
   StageMatrix matrix_;
   TransposedForces forces_;
   CorrectionAdjoint corrections_;
+  std::unique_ptr<LineLosses> losses_;        ///< null: forces_ alone has what they have
   std::unique_ptr<SweptTangent> swept_;       ///< null: by rows
   std::unique_ptr<NumberSlopes> numbers_;     ///< null: no θ is taken so
   std::unique_ptr<KineticRates> kinetic_;     ///< where there are sweeps
@@ -123,7 +134,7 @@ class StageAdjoint final : public FormAdjoint {
   bool driven_;
   bool any_rows_ = false;  ///< some θ is taken from the rows of other mechanisms
   std::vector<Dual8> x_, out_;
-  Eigen::VectorXd plain_, by_q_, by_u_, along_q_, along_p_, still_, rates_;
+  Eigen::VectorXd plain_, by_q_, by_u_, along_q_, along_p_, still_, rates_, u_;
 };
 
 }  // namespace momenta

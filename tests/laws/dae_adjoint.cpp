@@ -203,6 +203,17 @@ TEST(Adjoint, IsTheForwardGradientInEveryGauge) {
         request.settings.beta = 20;
         expect_same(scene, request, 1e-12);
       }
+  // Losses of joints alone: of dampers Q_u is constant, of friction it asks for u.
+  const std::string rate = "velocity = 0.7\n";
+  for (const char* losses : {"damping = 0.4\n", "damping = 0.4\nfriction = 0.2\n"}) {
+    std::string lossy = undamped;
+    lossy.replace(lossy.find(rate), rate.size(), rate + losses);
+    for (const char* rule : {"none", "reset", "flip"})
+      expect_same(of_text(lossy),
+                  asked("P.x + 0.3*C.u^2 - P.vy", {"mass", "O.u", "joint.O.damping"}, "momentum",
+                        rule, 0.5, 0.01),
+                  1e-12);
+  }
 }
 
 TEST(Adjoint, IsTheForwardGradientOfEveryMethodAndOfIntegrals) {
@@ -560,6 +571,104 @@ TEST(Adjoint, TakesLengthsSpringsAndPlacesAtOnce) {
   }
 }
 
+TEST(Adjoint, SweepsStagesApartWhereASpringHasNoLength) {
+  // At the start, one stage of those that are swept side by side: in all, two steps of four.
+  const std::string text = R"toml(
+name = "through the spring's end"
+gravity = [1, -9.81, 0]
+[[body]]
+name = "slide"
+mass = 2
+inertia = 0.1
+[[body]]
+name = "bob"
+mass = 1
+com = [0.4, 0, 0]
+inertia = 0.2
+[[joint]]
+name = "X"
+kind = "prismatic"
+child = "slide"
+axis = "x"
+velocity = 1
+[[joint]]
+name = "C"
+kind = "revolute"
+parent = "slide"
+child = "bob"
+axis = "z"
+origin = { child = [0.1, 0, 0] }
+[[force]]
+name = "S"
+kind = "spring-damper"
+parent = "ground"
+child = "slide"
+stiffness = 200
+rest = 0.3
+)toml";
+  GradientRequest request =
+      asked("X.q + 0.3*C.u", {"force.S.stiffness", "force.S.rest", "body.slide.mass"}, "momentum",
+            "none", 0.02, 0.01);
+  request.integral = true;
+  expect_same(of_text(text), request, 1e-12);
+  request.by.push_back("joint.C.origin.child.0");
+  request.mode = GradientMode::adjoint;
+  EXPECT_EQ(gradient(of_text(text), request).at_once, 4);
+  expect_same(of_text(text), request, 1e-12);
+}
+
+TEST(Adjoint, KeepsNumbersWhereTheyAre) {
+  KeptNumbers kept;
+  std::vector<std::pair<double*, std::size_t>> rows;
+  const std::size_t counts[] = {3, 1000, 1, 70000, 8192, 300000, 5};
+  for (std::size_t i = 0; i < 30; ++i) {
+    const std::size_t count = counts[i % std::size(counts)];
+    rows.emplace_back(kept.next(count), count);
+    std::fill_n(rows.back().first, count, static_cast<double>(i));
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    EXPECT_TRUE(std::all_of(rows[i].first, rows[i].first + rows[i].second, [&](double x) {
+      return x == static_cast<double>(i);
+    })) << i;
+}
+
+/// Against the derivatives of all applied forces.
+TEST(Adjoint, HasLossesAlongLinesInTwoSweeps) {
+  const auto damped = [](std::string text) {
+    text.replace(text.find("rest = 0.3\n"), 11, "rest = 0.3\ndamping = 0.7\n");
+    return text;
+  };
+  std::string stopped = sprung_four_bar();
+  stopped.replace(stopped.find("rest = 0.6\n"), 11,
+                  "rest = 0.6\ndamping = 0.3\nlimits = [0.1, 0.3]\nstop_stiffness = 50\n"
+                  "stop_damping = 3\n");
+  int skew_ones = 0;
+  for (const std::string& text : {std::string(four_bar), stopped, damped(in_space)}) {
+    const Mechanism mechanism(of_text(text).scene(), {});
+    const std::unique_ptr<LineLosses> losses = make_line_losses(mechanism);
+    ASSERT_TRUE(losses && losses->any() && losses->at_state()) << text;
+    TransposedForces twin(mechanism);
+    srand(7);
+    const Index n = mechanism.nv();
+    const VectorXd q = VectorXd::Random(n), u = VectorXd::Random(n), b = VectorXd::Random(n),
+                   du = VectorXd::Random(n), still = VectorXd::Zero(n);
+    VectorXd skew(n), by_u(n), along(n), twin_by_q(n), twin_by_u(n), twin_along(n);
+    losses->at(q, u, b, skew, by_u);
+    losses->along_rates(du, along);
+    twin.transposed(0, q, u, b, twin_by_q, twin_by_u);
+    twin.along(0, q, u, b, still, twin_along);
+    const VectorXd twin_skew = twin_by_q - twin_along;
+    twin.along(0, q, u, still, du, twin_along);
+    EXPECT_LT((by_u - twin_by_u).norm(), 1e-13 * twin_by_u.norm());
+    EXPECT_LT((skew - twin_skew).norm(), 1e-13 * (twin_skew.norm() + twin_by_q.norm()));
+    EXPECT_LT((along - twin_along).norm(), 1e-13 * twin_along.norm());
+    skew_ones += twin_skew.norm() > 0.01 * twin_by_u.norm();
+  }
+  EXPECT_EQ(skew_ones, 3);
+  const SceneText formulas = example("lagrangian/double_pendulum.toml");
+  EXPECT_EQ(make_line_losses(Mechanism(formulas.scene(), formulas.options)), nullptr);
+}
+
 /// A run that is recorded, and the stages of its steps computed from their starts.
 TEST(Adjoint, KeepsTheStagesOfARun) {
   const SceneText scene = of_text(four_bar);
@@ -570,7 +679,7 @@ TEST(Adjoint, KeepsTheStagesOfARun) {
       IntegrationOptions options;
       options.rtol = options.atol = 1e-6;
       if (std::string(method) == "rk4") options.step = 0.02;
-      RecordedRun record(at.ode(), options.step, 0.4, tableau.c);
+      RecordedRun record(at.ode(), options.step, 0.4, tableau.c, true);
       Observer observer;
       std::vector<std::vector<double>> reached;
       observer.step = [&](double t0, double t1, const Interpolant& between) {
@@ -595,6 +704,10 @@ TEST(Adjoint, KeepsTheStagesOfARun) {
               << method << ", step " << i << ", stage " << j;
           const double t = tableau.c[j] == 1 ? step.t1 : step.t0 + tableau.c[j] * step.h;
           ASSERT_TRUE(at.ode().rhs(t, y.data(), k.col(static_cast<Index>(j)).data()));
+          ASSERT_NE(record.rates(i, j), nullptr) << method << ", step " << i;
+          for (Index l = 0; l < n / 2; ++l)
+            EXPECT_NEAR(record.rates(i, j)[l], at.ode().rates()[static_cast<std::size_t>(l)], 1e-12)
+                << method << ", step " << i << ", stage " << j;
         }
         if (kind == Gauge::Kind::none) continue;
         const Map<const VectorXd> end(reached[i].data(), n);

@@ -8,6 +8,9 @@
 //
 // of the forces T* and momenta P* that are handed through there, loop impulses with them: of a
 // joint those of (26), (27), summed over all that it carries.
+//
+// Nothing here waits for anything else: motions are collected until each lane of a register has
+// one, and swept together.
 
 #include <momenta/core/kernel/signals.h>
 #include <momenta/core/kernel/sweeps.h>
@@ -18,22 +21,23 @@
 
 namespace momenta {
 
-/// A state and a direction as the sweeps of bodies take them.
-template <class Space, int Level>
+/// States and directions in lanes as the sweeps of bodies take them.
+template <class Space, int Level, int Width>
 struct PlacedAlong {
-  using S = Directions<1, Level>;
+  using Lanes = Pack<Width, Level>;
+  using S = Directions<Width, Level>;
   explicit PlacedAlong(const Model<Space>& model)
       : w(model), q(static_cast<std::size_t>(model.nv)), u(q.size()) {}
-  /// Poses and velocities at (t, q, u); dq and du may be null: nothing moves along them.
-  void at(double t, const double* from_q, const double* from_u, const double* dq, const double* du,
-          bool with_poses) {
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      q[i].a = Pack<1, Level>(from_q[i]);
-      q[i].b[0] = Pack<1, Level>(dq ? dq[i] : 0.0);
-      u[i].a = Pack<1, Level>(from_u ? from_u[i] : 0.0);
-      u[i].b[0] = Pack<1, Level>(du ? du[i] : 0.0);
-    }
-    poses_outward(w, S(t), q.data(), with_poses);
+  /// x + dx ε
+  static S along(const Lanes& x, const Lanes& dx) {
+    S s;
+    s.a = x;
+    s.b[0] = dx;
+    return s;
+  }
+  /// Poses and velocities at (t, q, u).
+  void place(const Lanes& t, bool with_poses) {
+    poses_outward(w, along(t, Lanes(0.0)), q.data(), with_poses);
     velocities_outward(w, u.data());
   }
   Workspace<Space, S> w;
@@ -211,72 +215,145 @@ class LoopNumbers {
 
 template <class Space, int Level>
 class NumberSweepAt final : public NumberSweep {
-  static constexpr int axes = Space::dimension == 6 ? 3 : 2;
-  using S = Directions<1, Level>;
+  static constexpr int axes = Space::dimension == 6 ? 3 : 2, width = native_width<Level>;
+  using Lanes = Pack<width, Level>;
+  using S = Directions<width, Level>;
   using Vector = typename Space::template Vector<S>;
   using Force = typename Space::template Force<S>;
 
  public:
   NumberSweepAt(const Model<Space>& model, const LoopModel<Space>& loops, bool of_places)
-      : model_(model), places_(number_places(model, loops.loops.size())), place_(model) {
-    if (!of_places) return;
-    loops_.emplace(loops, place_.w);
-    sigma_.resize(static_cast<std::size_t>(loops.rows));
+      : model_(model),
+        places_(number_places(model, loops.loops.size())),
+        place_(model),
+        sums_(static_cast<std::size_t>(places_.size), Lanes(0.0)) {
+    if (of_places) {
+      loops_.emplace(loops, place_.w);
+      sigma_.resize(static_cast<std::size_t>(loops.rows));
+    }
+    // Laws of time take one value for all lanes.
+    together_ = model.drives.empty() && model.laws.empty() ? width : 1;
+    for (Waiting& x : waiting_) x.numbers.resize(1 + 4 * place_.q.size() + 2 * sigma_.size());
   }
 
-  void add(double factor, const Motion& at, double* slopes) override {
-    put_ = {factor, true, slopes};
-    place_.at(at.t, at.q, at.u, at.dq, at.du, true);
+  void add(double factor, const Motion& at) override { wait(waiting_[of_all], of_all, factor, at); }
+  void add_loop_rates(double factor, const Motion& at) override {
+    if (loops_) wait(waiting_[of_loop_rates], of_loop_rates, factor, at);
+  }
+  void add_loops(double factor, double t, const double* q, const double* nu) override {
+    if (loops_)
+      wait(waiting_[of_loops], of_loops, factor, {t, q, nullptr, nu, nullptr, nullptr, nullptr});
+  }
+  void finish(double* slopes) override {
+    for (const Kind kind : {of_all, of_loop_rates, of_loops}) sweep(waiting_[kind], kind);
+    for (Lanes& sum : sums_) {
+      for (int i = 0; i < width; ++i) *slopes += sum.lane(i);
+      ++slopes;
+      sum = Lanes(0.0);
+    }
+  }
+
+ private:
+  enum Kind { of_all, of_loop_rates, of_loops };
+  /// Motions until there is one for each lane: t, q, δq, u, δu, σ, δσ. Plain numbers are written,
+  /// one by one.
+  struct Waiting {
+    std::vector<Lanes> numbers;
+    double factors[width];
+    int lanes = 0;
+    double* of_lane(int i) { return reinterpret_cast<double*>(numbers.data()) + i; }
+  };
+  /// Adds the derivative, or of what has none the value, to the next sum.
+  struct Put {
+    Lanes factor;
+    bool derivative = true;
+    Lanes* to = nullptr;
+    void operator()(const S& x) {
+      *to += factor * (derivative ? x.b[0] : x.a);
+      ++to;
+    }
+    void skip(Eigen::Index numbers) { to += numbers; }
+  };
+
+  void wait(Waiting& x, Kind kind, double factor, const Motion& at) {
+    x.factors[x.lanes] = factor;
+    double* to = x.of_lane(x.lanes);
+    const auto take = [&](const double* from, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i, to += width) *to = from ? from[i] : 0.0;
+    };
+    const std::size_t n = place_.q.size(), m = sigma_.size();
+    take(&at.t, 1);
+    for (const double* from : {at.q, at.dq, at.u, at.du}) take(from, n);
+    for (const double* from : {at.sigma, at.dsigma}) take(from, m);
+    if (++x.lanes == together_) sweep(x, kind);
+  }
+  void sweep(Waiting& x, Kind kind) {
+    const int lanes = x.lanes;
+    x.lanes = 0;
+    if (lanes == 0) return;
+    for (int i = lanes; i < width; ++i) {  // the others repeat the first, and count nothing
+      const double* from = x.of_lane(0);
+      double* to = x.of_lane(i);
+      for (std::size_t k = 0; k < x.numbers.size(); ++k) to[k * width] = from[k * width];
+      x.factors[i] = 0;
+    }
+    put_.derivative = kind != of_loops;
+    place(x, [](const Lanes& all) { return all; });
+    if (kind != of_all || lanes == 1 || !springs_vanish()) return put(kind, Lanes::load(x.factors));
+    // A spring without length is left out, of all lanes: there each goes by itself.
+    for (int i = 0; i < lanes; ++i) {
+      place(x, [i](const Lanes& all) { return Lanes(all.lane(i)); });
+      Lanes factor(0.0);
+      factor.set_lane(i, x.factors[i]);
+      put(kind, factor);
+    }
+  }
+  bool springs_vanish() const {
+    for (const auto& spring : model_.springs)
+      if (!SpringLine<Space, S>(place_.w, spring).has_direction()) return true;
+    return false;
+  }
+  /// Poses and velocities, and σ, from what `of` takes of each number.
+  template <class Of>
+  void place(const Waiting& x, Of&& of) {
+    const Lanes* from = x.numbers.data();
+    const Lanes t = of(*from++);
+    const auto take = [&](std::vector<S>& to) {
+      const std::size_t count = to.size();
+      for (std::size_t i = 0; i < count; ++i)
+        to[i] = place_.along(of(from[i]), of(from[count + i]));
+      from += 2 * count;
+    };
+    for (auto* to : {&place_.q, &place_.u, &sigma_}) take(*to);
+    place_.place(t, true);
+  }
+  void put(Kind kind, const Lanes& factor) {
+    put_.factor = factor;
+    put_.to = sums_.data();
+    if (kind != of_all) return put_loops_alone();
     put_inertias();
     if (loops_) {
       body_momenta(place_.w);
       weights_and_springs();
-      take(at.sigma, at.dsigma);
+      hand_to_bodies();
       project_inward(place_.w, static_cast<S*>(nullptr));
     }
     put_joints(true, true);
     if (loops_) loops_->each(sigma_.data(), true, put_);
-    put_.to = slopes + places_.springs;
+    put_.to = sums_.data() + places_.springs;
     put_springs();
   }
-  void add_loop_rates(double factor, const Motion& at, double* slopes) override {
-    put_ = {factor, true, slopes};
-    if (!loops_) return;
-    place_.at(at.t, at.q, at.u, at.dq, at.du, true);
-    put_loops_alone(at.sigma, at.dsigma);
-  }
-  void add_loops(double factor, double t, const double* q, const double* nu,
-                 double* slopes) override {
-    put_ = {factor, false, slopes};
-    if (!loops_) return;
-    place_.at(t, q, nullptr, nullptr, nullptr, true);
-    put_loops_alone(nu, nullptr);
-  }
-
- private:
-  /// Adds the derivative, or of what has none the value, to the next slope.
-  struct Put {
-    double factor = 0;
-    bool derivative = true;
-    double* to = nullptr;
-    void operator()(const S& x) { *to++ += factor * (derivative ? x.b[0].v : x.a.v); }
-    void skip(Eigen::Index numbers) { to += numbers; }
-  };
   /// What loops hand to the bodies.
-  void take(const double* sigma, const double* dsigma) {
-    for (std::size_t i = 0; i < sigma_.size(); ++i) {
-      sigma_[i].a = Pack<1, Level>(sigma ? sigma[i] : 0.0);
-      sigma_[i].b[0] = Pack<1, Level>(dsigma ? dsigma[i] : 0.0);
-    }
+  void hand_to_bodies() {
     loops_->place(sigma_.data());
     loops_->hand_to_bodies();
   }
-  void put_loops_alone(const double* sigma, const double* dsigma) {
+  void put_loops_alone() {
     for (auto& body : place_.w.body) {
       body.P = {};
       body.T = {};
     }
-    take(sigma, dsigma);
+    hand_to_bodies();
     project_inward(place_.w, static_cast<S*>(nullptr));
     put_.to += places_.joints;
     put_joints(put_.derivative, false);
@@ -337,7 +414,7 @@ class NumberSweepAt final : public NumberSweep {
   /// The numbers of joints; T* is summed on the way.
   void put_joints(bool of_rates, bool of_forces) {
     auto& w = place_.w;
-    double* const first = put_.to;
+    Lanes* const first = put_.to;
     constexpr auto stride = NumberPlaces<Space>::of_joint;
     for (std::size_t k = w.body.size(); k-- > 0;) {
       put_.to = first + stride * static_cast<Eigen::Index>(k);
@@ -443,9 +520,12 @@ class NumberSweepAt final : public NumberSweep {
 
   const Model<Space>& model_;
   NumberPlaces<Space> places_;
-  PlacedAlong<Space, Level> place_;
+  PlacedAlong<Space, Level, width> place_;
   std::optional<LoopNumbers<Space, S>> loops_;  ///< none: no places
   std::vector<S> sigma_;
+  int together_;             ///< motions that are swept at once
+  Waiting waiting_[3];       ///< by kind
+  std::vector<Lanes> sums_;  ///< of all numbers, lane by lane
   Put put_;
 };
 

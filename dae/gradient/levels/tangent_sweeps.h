@@ -58,8 +58,8 @@ NumberPlaces<Space> number_places(const Model<Space>& model, std::size_t loops) 
   return at;
 }
 
-/// Derivatives by numbers of L* = T − V + σᵀΦ̇ and of σᵀΦ: number_slopes.h. All add `factor` times
-/// theirs to slopes.
+/// Derivatives by numbers of L* = T − V + σᵀΦ̇ and of σᵀΦ: number_slopes.h. Motions are read at
+/// once and swept later, several side by side; finish() has the sum of all.
 class NumberSweep {
  public:
   /// Arrays of nv and m numbers at t [s]; of u, σ, dq, du, dσ those that are null are zero.
@@ -68,22 +68,23 @@ class NumberSweep {
     const double *q, *u, *sigma, *dq, *du, *dsigma;
   };
   virtual ~NumberSweep() = default;
-  /// D ∂L*/∂number along (dq, du, dσ). O(bodies + m)
-  virtual void add(double factor, const Motion& at, double* slopes) = 0;
-  /// D ∂(σᵀΦ̇)/∂number alone. O(bodies + m)
-  virtual void add_loop_rates(double factor, const Motion& at, double* slopes) = 0;
-  /// ∂(νᵀΦ)/∂number. O(bodies + m)
-  virtual void add_loops(double factor, double t, const double* q, const double* nu,
-                         double* slopes) = 0;
+  /// factor D ∂L*/∂number along (dq, du, dσ). O(bodies + m)
+  virtual void add(double factor, const Motion& at) = 0;
+  /// factor D ∂(σᵀΦ̇)/∂number alone. O(bodies + m)
+  virtual void add_loop_rates(double factor, const Motion& at) = 0;
+  /// factor ∂(νᵀΦ)/∂number. O(bodies + m)
+  virtual void add_loops(double factor, double t, const double* q, const double* nu) = 0;
+  /// slopes += all that was added since the last call. O(numbers)
+  virtual void finish(double* slopes) = 0;
 };
 
-/// D_v T_q, kinetic_rates.h.
+/// D_v T_q and M v, kinetic_rates.h.
 class KineticSweep {
  public:
   virtual ~KineticSweep() = default;
-  /// result (nv) at t [s], q, u along v (nv each). O(bodies)
-  virtual void along(double t, const double* q, const double* u, const double* v,
-                     double* result) = 0;
+  /// rates, momenta (nv each) at t [s], q, u along v (nv each). O(bodies)
+  virtual void along(double t, const double* q, const double* u, const double* v, double* rates,
+                     double* momenta) = 0;
 };
 
 /// All of one mechanism, by the level of best_level(); what they are made of stays where it is.

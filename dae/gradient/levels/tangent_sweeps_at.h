@@ -79,11 +79,17 @@ class KineticSweepAt final : public KineticSweep {
   explicit KineticSweepAt(const Model<Space>& model)
       : model_(model), place_(model), p_(place_.q.size()) {}
 
-  void along(double t, const double* q, const double* u, const double* v, double* result) override {
-    place_.at(t, q, u, nullptr, v, false);
+  void along(double t, const double* q, const double* u, const double* v, double* rates,
+             double* momenta) override {
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      place_.q[i] = place_.along(One(q[i]), One(0.0));
+      place_.u[i] = place_.along(One(u[i]), One(v[i]));
+    }
+    place_.place(One(t), false);
     auto& w = place_.w;
     body_momenta(w);
     momenta_inward(w, p_.data());
+    for (std::size_t i = 0; i < p_.size(); ++i) momenta[i] = p_[i].b[0].v;
     for (auto& body : w.body) body.T = {};
     momentum_rates_inward(w, place_.q.data(), place_.u.data(), p_.data());
     for (const auto& b : model_.bodies)
@@ -91,12 +97,13 @@ class KineticSweepAt final : public KineticSweep {
         const auto at = static_cast<std::size_t>(b.u);
         p_[at] -= joint_force(b, place_.q[static_cast<std::size_t>(b.q)], place_.u[at]);
       }
-    for (std::size_t i = 0; i < p_.size(); ++i) result[i] = p_[i].b[0].v;
+    for (std::size_t i = 0; i < p_.size(); ++i) rates[i] = p_[i].b[0].v;
   }
 
  private:
+  using One = Pack<1, Level>;
   const Model<Space>& model_;
-  PlacedAlong<Space, Level> place_;
+  PlacedAlong<Space, Level, 1> place_;
   std::vector<Directions<1, Level>> p_;
 };
 
