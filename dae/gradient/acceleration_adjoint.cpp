@@ -54,8 +54,6 @@ AccelerationAdjoint::AccelerationAdjoint(const Mechanism& mechanism, const OdeFo
   if (at_once() == 0) return;
   numbers_ = make_number_slopes(mechanism, placed_);
   mixed_numbers_ = make_number_slopes(mechanism, placed_);
-  slopes_.setZero(numbers_->size());
-  mixed_slopes_ = slopes_;
 }
 
 Index AccelerationAdjoint::at_once() const {
@@ -65,18 +63,17 @@ Index AccelerationAdjoint::at_once() const {
 
 void AccelerationAdjoint::finish(VectorXd& by_parameters) {
   if (!numbers_) return;
-  numbers_->finish(slopes_);
-  mixed_numbers_->finish(mixed_slopes_);
   // A sweep takes Q_θ of dampers times its direction of q: of D_c L*_θ that is none of S.
-  VectorXd all = mixed_slopes_;
+  VectorXd all = VectorXd::Zero(numbers_->size());
+  mixed_numbers_->finish(all);
   for (const Index i : numbers_->without_potential()) all[i] = 0;
-  all += slopes_;
+  numbers_->finish(all);
   for (std::size_t j = 0; j < others_.size(); ++j)
     if (const VectorXd& numbers = others_[j].numbers; numbers.size() > 0)
       by_parameters[static_cast<Index>(j)] += numbers.dot(all);
 }
 
-/// slopes −= S_θ of all numbers, without what forces without potential have but νᵀQ_θ.
+/// −S_θ of all numbers, without what forces without potential have but νᵀQ_θ.
 void AccelerationAdjoint::add_numbers(const AdjointState& at) {
   const double *q = at.q.data(), *u = at.p.data(), *udot = at.slope.data(),
                *lambda = at.sigma.data();

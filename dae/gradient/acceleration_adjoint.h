@@ -74,10 +74,10 @@ class AccelerationAdjoint final : public FormAdjoint {
   TransposedForces forces_;
   MixedRates mixed_;
   CorrectionAdjoint corrections_;
-  std::unique_ptr<NumberSlopes> numbers_, mixed_numbers_;  ///< null: no θ is taken so
-  bool placed_ = false;                                    ///< some θ changes places
-  bool any_rows_ = false;                  ///< some θ is taken from rows of other mechanisms
-  Eigen::VectorXd slopes_, mixed_slopes_;  ///< by numbers, so far; of D_c D_(0,ν,μ) L*_θ apart
+  std::unique_ptr<NumberSlopes> numbers_;        ///< null: no θ is taken so
+  std::unique_ptr<NumberSlopes> mixed_numbers_;  ///< of D_c D_(0,ν,μ) L*_θ
+  bool placed_ = false;                          ///< some θ changes places
+  bool any_rows_ = false;                        ///< some θ is taken from rows of other mechanisms
   Eigen::VectorXd nu_, mu_, plain_, by_q_, by_u_, shifted_, sigma_, x_, weights_;
 };
 

@@ -24,7 +24,7 @@ class CorrectionAdjoint {
   CorrectionAdjoint(const Mechanism& mechanism, const std::vector<OtherParameter>& others,
                     const TransposedForces& forces);
 
-  /// Where θ of numbers are summed; null: none is. `placed`: some change places.
+  /// Where θ of numbers are added; null: none is. `placed`: some change places.
   struct Numbers {
     NumberSlopes* of = nullptr;
     bool placed = false;

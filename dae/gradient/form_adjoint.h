@@ -4,12 +4,13 @@
 // stage_adjoint.h; on accelerations: acceleration_adjoint.h.
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace momenta {
 
 /// A state at which f is differentiated: its time [s], q (nq), the second half p of y (nv; of forms
-/// on accelerations that is u), u (nv), σ or λ (m), and the second half of ẏ (nv). The last three
-/// are empty where they are not known.
+/// on accelerations that is u), u (nv), σ or λ (m), and the second half of ẏ (nv). Each of the last
+/// three is empty where it is not known.
 struct AdjointState {
   double t = 0;
   Eigen::VectorXd q, p, u, sigma;
@@ -37,7 +38,8 @@ class FormAdjoint {
 
   /// How many parameters are taken by number_slopes.h.
   virtual Eigen::Index at_once() const = 0;
-  /// Whether states must have their u, multipliers and slopes.
+  /// Whether states must have their u, multipliers and slopes, or u alone; else the sweeps find
+  /// them, and where they do not carry a state, products without u and multipliers are false.
   virtual bool needs_solutions() const = 0;
   /// Whether they must have u, if nothing else.
   virtual bool needs_rates() const = 0;

@@ -7,8 +7,8 @@
 // differentiated (tangent_system.h, form_tangents.h), the assembly of its start too
 // (start_tangents.h), so that the gradient is that of the numbers a run computes, whatever the
 // accuracy of the run. Adjoint: the same derivative, backwards over the steps of the run
-// (adjoint_run.h, stage_adjoint.h), of which one sweep serves all θ. Derivation:
-// docs/theory/gradients.md.
+// (adjoint_run.h; of forms on momenta stage_adjoint.h, on accelerations acceleration_adjoint.h), of
+// which one sweep serves all θ. Derivation: docs/theory/gradients.md.
 //
 // Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Formulas with
 // corners are differentiated on the piece they are on. The mechanism is integrated as it is

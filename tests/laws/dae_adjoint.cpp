@@ -34,9 +34,18 @@ SceneText example(const std::string& path) {
   return of_text(reading::text_of(MOMENTA_SOURCE_DIR "/examples/" + path));
 }
 
+/// The four-bar without its spring, whose joint O rubs.
+std::string rubbed_four_bar() {
+  std::string text = four_bar;
+  const std::size_t force = text.find("[[force]]");
+  text.erase(force, text.find("[[marker]]") - force);
+  return text.insert(text.find("velocity = 0.7"), "damping = 0.3\nfriction = 0.2\n");
+}
+
 /// Scenes of every kind of force that an adjoint takes.
 std::vector<std::pair<std::string, SceneText>> scenes() {
   return {{"four-bar with a spring and a damper", of_text(four_bar)},
+          {"four-bar that rubs", of_text(rubbed_four_bar())},
           {"driven", of_text(driven())},
           {"chain", example("chain/scene.toml")},
           {"slider-crank", example("slider_crank/scene.toml")},
