@@ -82,6 +82,24 @@ std::string no_adjoint(const RunSettings& s, const Mechanism& mechanism, bool tr
   return "";
 }
 
+/// Mechanisms of the parameters whose numbers alone are known.
+void add_mechanisms(const SceneText& scene, const Mechanism& mechanism,
+                    const std::vector<RunVariable>& variables,
+                    std::vector<OtherParameter>& others) {
+  std::vector<RunVariable> without;
+  std::vector<OtherParameter*> places;
+  for (std::size_t j = 0; j < others.size(); ++j)
+    if (others[j].numbers.size() > 0 && others[j].mechanisms.empty()) {
+      without.push_back(variables[j]);
+      places.push_back(&others[j]);
+    }
+  std::vector<OtherParameter> made = other_parameters(scene, mechanism, without);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    places[i]->mechanisms = std::move(made[i].mechanisms);
+    places[i]->evaluations = std::move(made[i].evaluations);
+  }
+}
+
 /// A gradient under way: what forward and adjoint share.
 struct Asked {
   const GradientRequest& request;
@@ -128,10 +146,11 @@ struct Asked {
 void Asked::forward() {
   const RunSettings& s = result.settings;
   Functional functional(request.of, mechanism, result.variables, others);
-  const MatrixXd tangents_at_start = at_start();
+  MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
   FormTangents tangents(mechanism, form, others);
+  tangents.add_start(start.t, start.q, start.u, others, tangents_at_start);
   const auto directions = static_cast<int>(result.variables.size());
   TangentSystem system(form, tangents, request.integral ? &functional : nullptr, directions);
   const std::vector<double> y0 = system.initial(form.initial(start), tangents_at_start);
@@ -252,12 +271,15 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
   // The σ that a leak begins with depends on inertias in its own way, the energy on them itself.
+  const bool also_apart =
+      form.gauge().kind == Gauge::Kind::leak || request.of.find("energy") != std::string::npos;
   std::unique_ptr<NumberSlopes> slopes;
-  if (result.adjoint && form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
-      request.of.find("energy") == std::string::npos)
+  if (s.form == "momentum" && !(result.adjoint && also_apart) && !mechanism.scene().lagrangian &&
+      !mechanism.plan().quasi_velocities)
     slopes = make_number_slopes(mechanism, false);
-  const std::vector<OtherParameter> others =
+  std::vector<OtherParameter> others =
       other_parameters(scene, mechanism, result.variables, slopes.get());
+  if (slopes && also_apart) add_mechanisms(scene, mechanism, result.variables, others);
   Asked asked{request, mechanism, start, form, others, options, result};
   if (result.adjoint)
     asked.adjoint();

@@ -1,7 +1,5 @@
-#include <momenta/core/kernel/levels/level.h>
+#include <momenta/dae/gradient/levels/at_best_level.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
-
-#include <stdexcept>
 
 namespace momenta {
 
@@ -15,22 +13,6 @@ template <int Level, class Space>
 std::unique_ptr<KineticSweep> kinetic_sweep_at(const Model<Space>& model);
 
 namespace {
-
-/// act of the best level, as a constant.
-template <class Act>
-auto at_best_level(Act&& act) {
-  [[maybe_unused]] const int level = best_level();
-#ifdef MOMENTA_LEVEL4
-  if (level >= 4) return act.template operator()<4>();
-#endif
-#ifdef MOMENTA_LEVEL3
-  if (level >= 3) return act.template operator()<3>();
-#endif
-#ifdef MOMENTA_LEVEL1
-  if (level >= 1) return act.template operator()<1>();
-#endif
-  throw std::logic_error("no kernels of this level");
-}
 
 template <class Tree, class Space>
 std::unique_ptr<TangentSweeps> tangents(const Tree& tree, const SweptLoops<Space>& swept,
