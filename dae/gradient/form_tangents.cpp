@@ -43,7 +43,12 @@ FormTangents::FormTangents(const Mechanism& mechanism, const OdeForm& form,
       beta_(momenta_ ? form.beta() : form.baumgarte_gains().second),
       alpha_(form.baumgarte_gains().first),
       sigma_(VectorXd::Zero(m_)),
-      dsigma_(MatrixXd::Zero(m_, derivatives_.directions())) {}
+      dsigma_(MatrixXd::Zero(m_, derivatives_.directions())) {
+  if (!momenta_) return;
+  swept_ = make_swept_tangent(mechanism, leak_, beta_);
+  tables_ = make_table_tangents(mechanism, others);
+  if (tables_) derivatives_.leave_out(tables_->taken);
+}
 
 bool FormTangents::place(double t, const VectorXd& q) {
   e_->place(t, q.data());
@@ -57,10 +62,25 @@ MatrixXd FormTangents::joined(const MatrixXd& a, const MatrixXd& b, const Matrix
   return all;
 }
 
-/// du, dσ of (7) at u_, σ_; `of_rates`: explicit_ with the rows of (8) below.
-bool FormTangents::momentum(double t, const VectorXd& q, const MatrixXd& dq, const MatrixXd& dp,
-                            bool of_rates) {
-  if (!place(t, q)) return false;
+/// du, dσ, dṗ by the sweeps, dṗ without what it has of θ itself. False where they do not carry the
+/// state: where rows fade, here or in the first stage, the matrix says whether they may.
+bool FormTangents::sweep(double t, const VectorXd& q, const double* p, const MatrixXd& dq,
+                         const MatrixXd& dp) {
+  if (!swept_) return false;
+  const int faded = form_.pivots().faded;
+  if (faded_ < 0 && faded == 0) matrix_.independent();
+  if (faded_ < 0) faded_ = faded;
+  if (faded_ > 0 || faded > 0) return false;
+  along_p_ = dp - explicit_.topRows(nv_);
+  if (derivatives_.any_parameters() || (tables_ && tables_->any_loops))
+    besides_ = explicit_.middleRows(nv_, m_);
+  return swept_->along(t, q.data(), p, dq, along_p_, besides_, du_, dpdot_, dsigma_);
+}
+
+/// du, dσ of (7) at u_, σ_, and dṗ where the sweeps find them; `of_rates`: explicit_ with the rows
+/// of (8) below.
+bool FormTangents::momentum(double t, const VectorXd& q, const double* p, const MatrixXd& dq,
+                            const MatrixXd& dp, bool of_rates) {
   MomentumAndRateRows with_rates{{RowPlaces(mechanism_)}};
   with_rates.t = t;
   with_rates.beta = beta_;
@@ -70,6 +90,15 @@ bool FormTangents::momentum(double t, const VectorXd& q, const MatrixXd& dq, con
   const VectorXd x = momenta::joined(q, u_, sigma_);
   explicit_ = of_rates ? derivatives_.by_parameters(with_rates, x, 2 * nv_ + m_)
                        : derivatives_.by_parameters(rows, x, nv_ + m_);
+  if (tables_) {
+    tables_->at(t, q, u_, sigma_.data(), {leak_, beta_});
+    explicit_.topRows(nv_) += tables_->r1;
+    explicit_.middleRows(nv_, m_) += tables_->r2;
+    if (of_rates) explicit_.bottomRows(nv_) += tables_->r3;
+  }
+  if (sweep(t, q, p, dq, dp)) return true;
+  dpdot_.resize(0, 0);
+  if (!place(t, q)) return false;
   MatrixXd right =
       -derivatives_.along(rows, x, joined(dq, MatrixXd::Zero(nv_, k), MatrixXd::Zero(m_, k)),
                           nv_ + m_) -
@@ -91,7 +120,12 @@ bool FormTangents::rates(double t, const double* y, const double* ydot, const Ma
   Ydot.resize(nq_ + nv_, k);
   if (momenta_) {
     u_ = Map<const VectorXd>(form_.rates().data(), nv_);
-    if (!momentum(t, q, dq, dx, true)) return false;
+    if (!momentum(t, q, y + nq_, dq, dx, true)) return false;
+    if (dpdot_.size() > 0) {
+      Ydot.topRows(nq_) = du_;
+      Ydot.bottomRows(nv_) = dpdot_ + explicit_.bottomRows(nv_);
+      return true;
+    }
     const auto rows = [&](auto& e, const auto* x, auto* out) {
       const auto *u = x + nq_, *sigma = m_ > 0 ? x + nq_ + nv_ : nullptr;
       e.place(t, x);
@@ -158,9 +192,18 @@ bool FormTangents::correct_position(double t, VectorXd& q, MatrixXd& dq) {
     if (pass > 0 && !(length < 0.5 * before)) break;
     CorrectionRows rows{RowPlaces(mechanism_)};
     rows.t = t;
-    const MatrixXd d =
-        derivatives_(rows, momenta::joined(q, found, VectorXd(0)),
-                     joined(dq, MatrixXd::Zero(nv_ + m_, k), MatrixXd(0, k)), nv_ + m_);
+    MatrixXd d = derivatives_(rows, momenta::joined(q, found, VectorXd(0)),
+                              joined(dq, MatrixXd::Zero(nv_ + m_, k), MatrixXd(0, k)), nv_ + m_);
+    if (tables_) {  // M δ + Φ_qᵀν, Φ_q δ + Φ, of the motion that no drive makes
+      tables_->at(t, q, found.head(nv_), found.data() + nv_, {0, 1});
+      d.topRows(nv_) += tables_->r1;
+      d.bottomRows(m_) += tables_->r2;
+      if (mechanism_.plan().drives) {
+        tables_->at(t, q, VectorXd::Zero(nv_), nullptr, {});
+        d.topRows(nv_) -= tables_->r1;
+        d.bottomRows(m_) -= tables_->r2;
+      }
+    }
     const MatrixXd ddelta = -matrix_.solve(d).topRows(nv_);
     // q + H(q) δ
     const auto moved = [&](auto& e, const auto* x, auto* out) {
@@ -238,7 +281,7 @@ bool FormTangents::after_step(double t, const double* before, const double* afte
     sigma_ = Map<const VectorXd>(form_.multipliers().data(), m_);
     if (kept != 0) sigma_ *= kept;  // the form has turned it
     q = Map<const VectorXd>(after, nq_);
-    if (!momentum(t, q, dq, dx, false)) return false;
+    if (!momentum(t, q, before + nq_, dq, dx, false)) return false;
     const auto rows = [&](auto& e, const auto* x, auto* out) {
       e.place(t, x);
       e.move(x + nq_);
@@ -246,6 +289,11 @@ bool FormTangents::after_step(double t, const double* before, const double* afte
     };
     dx = derivatives_(rows, momenta::joined(q, u_, kept * sigma_), joined(dq, du_, kept * dsigma_),
                       nv_);
+    if (tables_) {
+      sigma_ *= kept;
+      tables_->at(t, q, u_, sigma_.data(), {});
+      dx += tables_->r1;
+    }
   }
   Y.topRows(nq_) = dq;
   Y.bottomRows(nv_) = dx;

@@ -13,7 +13,14 @@
 //
 //   F = ( M u̇ + b − Q + Φ_qᵀλ,  Φ̈ + 2αΦ̇ + β²Φ )                                                (3)
 //
-// dF and dR are those of row_derivatives.h. After a step, in the order of the forms,
+// dF and dR are those of row_derivatives.h. On momenta, where the sweeps carry the mechanism, no
+// matrix and no rows are needed (swept_tangent.h): with ∂F/∂θ = (r1, r2),
+// ∂R/∂θ = r3 at constant q, u, σ,
+//
+//   Y' = f_y (dq, dp − r1) with r2 in the second row, + (0, r3)
+//
+// and of θ that change numbers of the tables alone r1, r2, r3 are those of table_tangents.h.
+// After a step, in the order of the forms,
 //
 //   position   q ← q + H δ,  M δ + Φ_qᵀν = 0,  Φ_q δ = −Φ       differentiated as F is
 //   velocity   u ← v,  M v + Φ_qᵀν = M u,  Φ_q v = −Φ_t         the same
@@ -25,6 +32,8 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/gradient/row_derivatives.h>
 #include <momenta/dae/gradient/stage_matrix.h>
+#include <momenta/dae/gradient/swept_tangent.h>
+#include <momenta/dae/gradient/table_tangents.h>
 
 namespace momenta {
 
@@ -43,14 +52,20 @@ class FormTangents {
   const Eigen::MatrixXd& velocity() const { return du_; }
   /// u (nv) there.
   const Eigen::VectorXd& u() const { return u_; }
+  /// Whether the sweeps are differentiated where no rows fade.
+  bool swept() const { return swept_ != nullptr; }
+  /// Rows and the matrix alone from now on.
+  void by_rows() { swept_.reset(); }
 
   /// Y after form.after_step(t, …), which took `before` to `after`; Y is that of `before` on entry.
   bool after_step(double t, const double* before, const double* after, Eigen::MatrixXd& Y);
 
  private:
   bool place(double t, const Eigen::VectorXd& q);
-  bool momentum(double t, const Eigen::VectorXd& q, const Eigen::MatrixXd& dq,
+  bool momentum(double t, const Eigen::VectorXd& q, const double* p, const Eigen::MatrixXd& dq,
                 const Eigen::MatrixXd& dp, bool of_rates);
+  bool sweep(double t, const Eigen::VectorXd& q, const double* p, const Eigen::MatrixXd& dq,
+             const Eigen::MatrixXd& dp);
   bool correct_position(double t, Eigen::VectorXd& q, Eigen::MatrixXd& dq);
   bool correct_velocity(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                         const Eigen::MatrixXd& dq, Eigen::MatrixXd& du);
@@ -63,6 +78,8 @@ class FormTangents {
   RowDerivatives derivatives_;
   StageMatrix matrix_;
   std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<SweptTangent> swept_;    ///< null: by rows
+  std::unique_ptr<TableTangents> tables_;  ///< null: no θ is taken so
   Eigen::Index nq_, nv_, m_;
   bool momenta_, projects_, repeats_;
   Gauge gauge_;
@@ -70,6 +87,8 @@ class FormTangents {
   Eigen::VectorXd u_, sigma_;
   Eigen::MatrixXd du_, dsigma_;
   Eigen::MatrixXd explicit_;  ///< ∂/∂θ of the rows of (7) and, where asked for, (8)
+  Eigen::MatrixXd dpdot_, along_p_, besides_;
+  int faded_ = -1;  ///< rows, in the first stage
 };
 
 /// "momentum", …: forms whose runs can be differentiated.

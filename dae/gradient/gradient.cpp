@@ -261,9 +261,15 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
     start_adjoint.emplace(mechanism, start);
     at_once.slopes = &start_adjoint->numbers();
     at_once.starts = start_adjoint->follows_assembly();
-    at_once.makes_all = !result.adjoint || request.of.find("energy") != std::string::npos;
+    const auto asks = [&](const std::string& name) {
+      return request.of.find(name) != std::string::npos ||
+             std::any_of(request.outputs.begin(), request.outputs.end(),
+                         [&](const std::string& of) { return of.find(name) != std::string::npos; });
+    };
+    // On accelerations forward tangents are of rows alone.
+    at_once.makes_all = (!result.adjoint && !form.momentum_like()) || asks("energy");
     for (const Column& marker : mechanism.marker_columns())
-      at_once.makes_places |= request.of.find(marker.name) != std::string::npos;
+      at_once.makes_places |= asks(marker.name);
   }
   const std::vector<OtherParameter> others =
       other_parameters(scene, mechanism, result.variables, at_once);

@@ -49,7 +49,16 @@ class RowDerivatives {
  public:
   /// The mechanism and `others`, one a direction, must outlive it.
   RowDerivatives(const Mechanism& mechanism, const std::vector<OtherParameter>& others)
-      : others_(others), dual_(mechanism.evaluation<Dual8>()) {}
+      : others_(others), dual_(mechanism.evaluation<Dual8>()), elsewhere_(others.size()) {}
+
+  /// By these parameters ∂r/∂θ stays zero: it is added by somebody else.
+  void leave_out(const std::vector<bool>& parameters) { elsewhere_ = parameters; }
+  /// Whether some parameter is taken by evaluations of other mechanisms.
+  bool any_parameters() const {
+    for (std::size_t j = 0; j < others_.size(); ++j)
+      if (!elsewhere_[j] && !others_[j].evaluations.empty()) return true;
+    return false;
+  }
 
   Eigen::Index directions() const { return static_cast<Eigen::Index>(others_.size()); }
 
@@ -84,6 +93,7 @@ class RowDerivatives {
     plain_.resize(size);
     for (Eigen::Index j = 0; j < d.cols(); ++j) {
       const OtherParameter& other = others_[static_cast<std::size_t>(j)];
+      if (elsewhere_[static_cast<std::size_t>(j)]) continue;
       for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
         rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain_.data());
         d.col(j) += sixth_order::points[k].weight / other.h * plain_;
@@ -103,6 +113,7 @@ class RowDerivatives {
   static constexpr Eigen::Index width = 8;
   const std::vector<OtherParameter>& others_;
   std::unique_ptr<Evaluation<Dual8>> dual_;
+  std::vector<bool> elsewhere_;
   std::vector<Dual8> x_, out_;
   Eigen::VectorXd plain_;
 };

@@ -58,7 +58,9 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
   std::vector<std::string_view> known;
   std::function<double(const std::string&)> number_at;
   for (const RunVariable& v : all) known.push_back(v.name);
-  for (const std::string& name : names) {
+  for (std::string name : names) {
+    if (constexpr std::string_view table = "parameters."; name.starts_with(table))
+      name.erase(0, table.size());  // its place: settings take both
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](const RunVariable& v) { return v.name == name; }))
       throw std::invalid_argument(reading::in_quotes(name) + " is named twice; expected it once");

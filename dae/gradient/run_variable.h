@@ -36,9 +36,10 @@ struct SceneText {
   Scene scene(const std::vector<Setting>& more = {}) const;
 };
 
-/// Of names: a parameter; a coordinate or rate, as in the header of trajectory.csv, but no part of
-/// a quaternion; any other number by its place (core/scene/toml/setting.h). `mechanism`: of the
-/// scene. @throws std::invalid_argument: one sentence on a name that is not known, or comes twice
+/// Of names: a parameter, "a" or "parameters.a"; a coordinate or rate, as in the header of
+/// trajectory.csv, but no part of a quaternion; any other number by its place
+/// (core/scene/toml/setting.h). `mechanism`: of the scene. @throws std::invalid_argument: one
+/// sentence on a name that is not known, or comes twice
 std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& mechanism,
                                        const std::vector<std::string>& names);
 

@@ -1,15 +1,21 @@
 #include <momenta/dae/gradient/stage_matrix.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace momenta {
 namespace {
+
+using Eigen::Index;
 
 /// Of the scaled matrix, beside its largest pivot: redundant rows are at what their loops are off
 /// by.
 constexpr double dependent = 1e-7;
 /// Of one without redundant rows: a loop 1e-5 from a singular pose has its square.
 constexpr double singular_below = 1e-10;
+/// Unknowns from which on the sparse factors take less time.
+constexpr Index sparse_from = 40;
 
 }  // namespace
 
@@ -17,53 +23,86 @@ StageMatrix::StageMatrix(const Mechanism& mechanism)
     : mechanism_(mechanism),
       nv_(mechanism.nv()),
       m_(mechanism.m()),
-      mass_(mechanism.kkt_pattern().mass.size()),
+      entries_(mechanism.kkt_pattern().mass),
       loops_(mechanism.kkt_pattern().constraint.size()),
-      scale_(nv_ + m_) {}
+      soft_(static_cast<std::size_t>(m_), 0.0),
+      scale_(nv_ + m_) {
+  std::map<std::pair<int, int>, std::size_t> known;
+  for (const auto& e : mechanism.kkt_pattern().constraint) {
+    const auto [at, is_new] = known.try_emplace({e.row, e.column}, entries_.size());
+    if (is_new) entries_.push_back({static_cast<int>(nv_) + e.row, e.column});
+    place_.push_back(at->second);
+  }
+  values_.resize(entries_.size());
+  if (m_ > 0 && nv_ + m_ >= sparse_from)
+    sparse_ = std::make_unique<KluSolver>(static_cast<int>(nv_ + m_), static_cast<int>(m_),
+                                          entries_, KluSolver::Order::blocks);
+}
+
+void StageMatrix::fill_dense() {
+  matrix_.setZero(nv_ + m_, nv_ + m_);
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const auto [row, column] = entries_[k];
+    matrix_(row, column) = matrix_(column, row) = values_[k];
+  }
+}
 
 void StageMatrix::factor(Evaluation<double>& e) {
-  const KktPattern& pattern = mechanism_.kkt_pattern();
-  matrix_.setZero(nv_ + m_, nv_ + m_);
-  e.mass_entries(mass_.data());
-  for (std::size_t k = 0; k < mass_.size(); ++k) {
-    const auto [row, column] = pattern.mass[k];
-    matrix_(row, column) = matrix_(column, row) = mass_[k];
-  }
+  const std::size_t masses = mechanism_.kkt_pattern().mass.size();
+  e.mass_entries(values_.data());
   if (m_ > 0) e.constraint_entries(loops_.data());
-  const double largest = nv_ > 0 ? matrix_.diagonal().maxCoeff() : 0;
-  for (Eigen::Index i = 0; i < nv_; ++i) {
-    const double mass = matrix_(i, i);
-    scale_[i] = 1 / std::sqrt(mass > 1e-14 * largest ? mass : largest);
+  std::fill(values_.begin() + static_cast<std::ptrdiff_t>(masses), values_.end(), 0.0);
+  for (std::size_t k = 0; k < loops_.size(); ++k) values_[place_[k]] += loops_[k];
+  scale_.setZero();
+  for (std::size_t k = 0; k < masses; ++k)
+    if (entries_[k].row == entries_[k].column) scale_[entries_[k].row] = values_[k];
+  const double largest = nv_ > 0 ? scale_.head(nv_).maxCoeff() : 0;
+  for (Index i = 0; i < nv_; ++i)
+    scale_[i] = 1 / std::sqrt(scale_[i] > 1e-14 * largest ? scale_[i] : largest);
+  for (std::size_t k = masses; k < entries_.size(); ++k) {
+    const double entry = values_[k] * scale_[entries_[k].column];
+    scale_[entries_[k].row] += entry * entry;
   }
-  for (std::size_t k = 0; k < loops_.size(); ++k) {
-    const auto [row, column] = pattern.constraint[k];
-    matrix_(nv_ + row, column) += loops_[k];
-  }
-  for (Eigen::Index i = 0; i < m_; ++i) {
-    const double size =
-        matrix_.row(nv_ + i).head(nv_).transpose().cwiseProduct(scale_.head(nv_)).norm();
-    scale_[nv_ + i] = size > 0 ? 1 / size : 1;
-  }
-  matrix_.topRightCorner(nv_, m_) = matrix_.bottomLeftCorner(m_, nv_).transpose();
-  matrix_ = scale_.asDiagonal() * matrix_ * scale_.asDiagonal();
+  for (Index i = nv_; i < nv_ + m_; ++i) scale_[i] = scale_[i] > 0 ? 1 / std::sqrt(scale_[i]) : 1;
+  for (std::size_t k = 0; k < entries_.size(); ++k)
+    values_[k] *= scale_[entries_[k].row] * scale_[entries_[k].column];
   if (rank_ < 0) {
+    fill_dense();
     orthogonal_.setThreshold(dependent);
     orthogonal_.compute(matrix_);
     rank_ = orthogonal_.rank();
   }
-  if (rank_ == matrix_.rows()) {
-    lu_.compute(matrix_);
-    singular_ = matrix_.rows() > 0 && !(lu_.rcond() > singular_below);
-  } else {
+  dense_ = true;
+  if (rank_ != nv_ + m_) {
+    fill_dense();
     orthogonal_.compute(matrix_);
     singular_ = orthogonal_.rank() != rank_;
+    return;
   }
+  if (sparse_) {
+    for (std::size_t k = 0; k < values_.size(); ++k) sparse_->matrix().set(k, values_[k]);
+    singular_ = !sparse_->factor(soft_) || !(sparse_->pivot_ratio() > singular_below);
+    dense_ = false;
+    return;
+  }
+  fill_dense();
+  lu_.compute(matrix_);
+  singular_ = matrix_.rows() > 0 && !(lu_.rcond() > singular_below);
 }
 
-Eigen::MatrixXd StageMatrix::solve(const Eigen::MatrixXd& right) const {
-  const Eigen::MatrixXd scaled = scale_.asDiagonal() * right;
-  if (rank_ == matrix_.rows()) return scale_.asDiagonal() * lu_.solve(scaled);
-  return scale_.asDiagonal() * orthogonal_.solve(scaled);
+Eigen::MatrixXd StageMatrix::solve(const Eigen::MatrixXd& right) {
+  Eigen::MatrixXd x = scale_.asDiagonal() * right;
+  if (!dense_) {
+    for (Index j = 0; j < x.cols() && !dense_; ++j)
+      if (!sparse_->solve(x.col(j).data(), nullptr, true)) dense_ = true;
+    if (!dense_) return scale_.asDiagonal() * x;
+    // The residual of a column did not come down to rounding.
+    x = scale_.asDiagonal() * right;
+    fill_dense();
+    lu_.compute(matrix_);
+  }
+  if (rank_ == nv_ + m_) return scale_.asDiagonal() * lu_.solve(x);
+  return scale_.asDiagonal() * orthogonal_.solve(x);
 }
 
 }  // namespace momenta

@@ -1,7 +1,11 @@
 #include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/gradient/levels/direction_sweeps.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
 #include <momenta/dae/gradient/swept_tangent.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
+
+#include <Eigen/SparseCore>
+#include <algorithm>
 
 namespace momenta {
 namespace {
@@ -12,16 +16,18 @@ using TreeOf = decltype(build_links(std::declval<const Model<Space>&>()));
 template <class Space>
 class SweptTangentOf final : public SweptTangent {
  public:
-  SweptTangentOf(const Mechanism& mechanism, Model<Space> built)
+  SweptTangentOf(const Mechanism& mechanism, Model<Space> built, double leak, double beta)
       : model_(std::move(built)),
         links_(build_links(model_)),
         swept_(swept_loops(
             mechanism.tree(), model_,
             in_link_frames(build_loops(mechanism.scene(), mechanism.tree(), model_), links_))) {
     if (!swept_.plan.fits()) return;
-    sweeps_ =
-        make_tangent_sweeps(links_, swept_, fade_beside(fade_evaluation, mechanism.masses_apart()),
-                            mechanism.has_body_forces());
+    const double fade = fade_beside(fade_evaluation, mechanism.masses_apart());
+    sweeps_ = make_tangent_sweeps(links_, swept_, fade, mechanism.has_body_forces());
+    lanes_ = make_direction_sweeps(links_, swept_, fade, mechanism.has_body_forces());
+    sweeps_->feed_back(leak, beta);
+    if (lanes_) lanes_->feed_back(leak, beta);
     for (auto* x : {&u, &du, &dpdot}) x->resize(static_cast<std::size_t>(mechanism.nv()));
     for (auto* x : {&sigma, &dsigma}) x->resize(static_cast<std::size_t>(mechanism.m()));
   }
@@ -30,42 +36,131 @@ class SweptTangentOf final : public SweptTangent {
 
   bool operator()(double t, const double* q, const double* p, const double* dq,
                   const double* dp) override {
-    if (!(*sweeps_)(t, q, p, dq, dp,
-                    {u.data(), du.data(), dpdot.data(), sigma.data(), dsigma.data()}))
-      return false;
-    for (auto* x : {&sigma, &dsigma}) {
-      if (!swept_.shared.empty()) swept_.shared.to_given(x->data(), 1);
-      if (!swept_.carried.all()) swept_.carried.to_given(x->data(), 1, nullptr);
+    return one(t, q, p, dq, dp, nullptr);
+  }
+
+  bool along(double t, const double* q, const double* p, const MatrixXd& dq, const MatrixXd& dp,
+             const MatrixXd& besides, MatrixXd& to_u, MatrixXd& to_pdot,
+             MatrixXd& to_sigma) override {
+    const Index count = dp.cols();
+    to_u.resize(dp.rows(), count);
+    to_pdot.resize(dp.rows(), count);
+    to_sigma.resize(static_cast<Index>(sigma.size()), count);
+    const bool any = besides.size() > 0;
+    Index k = 0;
+    if (lanes_) {
+      const Index width = lanes_->width();
+      // The lanes left empty cost as much as the others: two directions go one by one.
+      for (; count - k > 2; k += width) {
+        const Index of = std::min(width, count - k);
+        spread(dq, k, of, in_q_);
+        spread(dp, k, of, in_p_);
+        if (any) spread_rows(besides, k, of);
+        for (auto* x : {&out_u_, &out_pdot_}) x->resize(width, dp.rows());
+        out_sigma_.resize(width, to_sigma.rows());
+        if (!(*lanes_)(t, q, p, in_q_.data(), in_p_.data(), any ? in_rows_.data() : nullptr,
+                       {out_u_.data(), out_pdot_.data(), out_sigma_.data()}))
+          return false;
+        to_u.middleCols(k, of) = out_u_.topRows(of).transpose();
+        to_pdot.middleCols(k, of) = out_pdot_.topRows(of).transpose();
+        to_sigma.middleCols(k, of) = out_sigma_.topRows(of).transpose();
+      }
     }
+    for (Index i = k; i < count; ++i) {
+      if (!one(t, q, p, dq.col(i).data(), dp.col(i).data(), any ? besides.col(i).data() : nullptr))
+        return false;
+      std::copy(du.begin(), du.end(), to_u.col(i).data());
+      std::copy(dpdot.begin(), dpdot.end(), to_pdot.col(i).data());
+      std::copy(dsigma.begin(), dsigma.end(), to_sigma.col(i).data());
+    }
+    for (Index i = 0; i < std::min(k, count); ++i) to_given(to_sigma.col(i).data());
     return true;
   }
 
  private:
+  using Index = Eigen::Index;
+  using MatrixXd = Eigen::MatrixXd;
+
+  bool one(double t, const double* q, const double* p, const double* dq, const double* dp,
+           const double* besides) {
+    if (!(*sweeps_)(t, q, p, dq, dp,
+                    {u.data(), du.data(), dpdot.data(), sigma.data(), dsigma.data()},
+                    besides ? as_swept(besides) : nullptr))
+      return false;
+    for (auto* x : {&sigma, &dsigma}) to_given(x->data());
+    return true;
+  }
+  void to_given(double* x) {
+    if (!swept_.shared.empty()) swept_.shared.to_given(x, 1);
+    if (!swept_.carried.all()) swept_.carried.to_given(x, 1, nullptr);
+  }
+  /// Numbers by rows of Φ (m) as the rows are swept, until the next call: of ties paired anew Φ' =
+  /// T Φ where σ = Tᵀσ', of balls along other axes as σ'.
+  const double* as_swept(const double* rows) {
+    if (!swept_.carried.all()) return swept_.carried.to_carried(rows);
+    if (swept_.shared.empty()) return rows;
+    if (paired_.size() == 0) {
+      std::vector<Eigen::Triplet<double>> entries;
+      const auto m = static_cast<Index>(sigma.size());
+      Eigen::VectorXd row(m);
+      for (Index i = 0; i < m; ++i) {
+        row = Eigen::VectorXd::Unit(m, i);
+        swept_.shared.to_given(row.data(), 1);
+        for (Index k = 0; k < m; ++k)
+          if (row[k] != 0) entries.emplace_back(static_cast<int>(i), static_cast<int>(k), row[k]);
+      }
+      paired_.resize(m, m);
+      paired_.setFromTriplets(entries.begin(), entries.end());
+      in_paired_.resize(m);
+    }
+    in_paired_.noalias() = paired_ * Eigen::Map<const Eigen::VectorXd>(rows, in_paired_.size());
+    return in_paired_.data();
+  }
+  /// Columns from `first` on as lanes; those that are left are zero.
+  void spread(const MatrixXd& columns, Index first, Index count, MatrixXd& to) const {
+    to.setZero(lanes_->width(), columns.rows());
+    to.topRows(count) = columns.middleCols(first, count).transpose();
+  }
+  void spread_rows(const MatrixXd& columns, Index first, Index count) {
+    const Index rows = swept_.loops.rows;
+    in_rows_.setZero(lanes_->width(), rows);
+    for (Index i = 0; i < count; ++i)
+      in_rows_.row(i) =
+          Eigen::Map<const Eigen::RowVectorXd>(as_swept(columns.col(first + i).data()), rows);
+  }
+
   Model<Space> model_;
   TreeOf<Space> links_;
   SweptLoops<Space> swept_;
   std::unique_ptr<TangentSweeps> sweeps_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> paired_;  ///< T, once asked for
+  Eigen::VectorXd in_paired_;
+  std::unique_ptr<DirectionSweeps> lanes_;                         ///< null: one by one
+  MatrixXd in_q_, in_p_, in_rows_, out_u_, out_pdot_, out_sigma_;  ///< lanes × numbers
 };
 
 template <class Space>
-std::unique_ptr<SweptTangent> made(const Mechanism& mechanism, Model<Space> built) {
-  auto tangent = std::make_unique<SweptTangentOf<Space>>(mechanism, std::move(built));
+std::unique_ptr<SweptTangent> made(const Mechanism& mechanism, Model<Space> built, double leak,
+                                   double beta) {
+  auto tangent = std::make_unique<SweptTangentOf<Space>>(mechanism, std::move(built), leak, beta);
   if (!tangent->fits()) return nullptr;
   return tangent;
 }
 
 }  // namespace
 
-std::unique_ptr<SweptTangent> make_swept_tangent(const Mechanism& mechanism) {
+std::unique_ptr<SweptTangent> make_swept_tangent(const Mechanism& mechanism, double leak,
+                                                 double beta) {
   if (mechanism.scene().lagrangian || mechanism.plan().quasi_velocities) return nullptr;
   if (mechanism.m() > 0 && mechanism.kkt() != KktChoice::sweeps) return nullptr;
   const Tree& tree = mechanism.tree();
   if (mechanism.plan().planar) {
     if (mechanism.has_forces_apart()) return nullptr;
-    return made(mechanism, build_planar_model(tree, mechanism.scene(), mechanism.plan().basis));
+    return made(mechanism, build_planar_model(tree, mechanism.scene(), mechanism.plan().basis),
+                leak, beta);
   }
   if (mechanism.has_body_forces()) return nullptr;
-  return made(mechanism, build_spatial_model(tree, mechanism.scene()));
+  return made(mechanism, build_spatial_model(tree, mechanism.scene()), leak, beta);
 }
 
 }  // namespace momenta

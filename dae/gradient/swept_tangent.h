@@ -1,10 +1,12 @@
 #pragma once
-// The derivative of (q, p, t) → (u, σ, ṗ), eqs. (7)-(8), along one direction (δq, δp): the sweeps
-// that carry the loops, in dual numbers of one direction, compiled for the registers of the machine
-// (levels/tangent_sweeps.h). O(bodies + m), no matrix; the evaluation itself comes along.
+// The derivative of (q, p, t) → (u, σ, ṗ), eqs. (7)-(8), along one direction (δq, δp) or several:
+// the sweeps that carry the loops, in dual numbers of one direction, or of one in each lane of a
+// register, compiled for the machine (levels/tangent_sweeps.h, levels/direction_sweeps.h). O(bodies
+// + m), no matrix; the evaluation itself comes along.
 
 #include <momenta/dae/mechanism.h>
 
+#include <Eigen/Core>
 #include <memory>
 #include <vector>
 
@@ -14,15 +16,25 @@ namespace momenta {
 class SweptTangent {
  public:
   virtual ~SweptTangent() = default;
-  /// At (t, q, p) along (dq, dp), nv each; without quaternions, leak and β. False where a joint has
+  /// At (t, q, p) along (dq, dp), nv each; without quaternions. False where a joint has
   /// no inertia or a branch is weak.
   virtual bool operator()(double t, const double* q, const double* p, const double* dq,
                           const double* dp) = 0;
   // Of the last call: u and its derivative, that of ṗ (nv), all forces included; σ and its (m).
   std::vector<double> u, du, dpdot, sigma, dsigma;
+
+  /// Of several directions, by columns: dq, dp, du and dpdot nv × directions, besides and dsigma m
+  /// × directions. `besides` joins the second row of (2): Φ_q δu + δΦ_q u + … + besides = 0; empty:
+  /// zero. Results are resized. Cost: of one direction about two evaluations, of each of eight less
+  /// than one where fronts are narrow.
+  virtual bool along(double t, const double* q, const double* p, const Eigen::MatrixXd& dq,
+                     const Eigen::MatrixXd& dp, const Eigen::MatrixXd& besides, Eigen::MatrixXd& du,
+                     Eigen::MatrixXd& dpdot, Eigen::MatrixXd& dsigma) = 0;
 };
 
-/// Null where the sweeps do not carry the loops or the forces: then there is the matrix alone.
-std::unique_ptr<SweptTangent> make_swept_tangent(const Mechanism& mechanism);
+/// With κ of (8) and β of (7) [1/s]. Null where the sweeps do not carry the loops or the forces:
+/// then there is the matrix alone.
+std::unique_ptr<SweptTangent> make_swept_tangent(const Mechanism& mechanism, double leak = 0,
+                                                 double beta = 0);
 
 }  // namespace momenta

@@ -68,6 +68,10 @@ bool KluSolver::factor_anew() {
   return false;
 }
 
+double KluSolver::pivot_ratio() {
+  return numeric_ && klu_rcond(symbolic_, numeric_, &common_) == 1 ? common_.rcond : 0;
+}
+
 bool KluSolver::solve(double* x, const double* centre, bool is_model) {
   std::copy(x, x + given_.size(), given_.begin());
   if (!attempt(centre, is_model) && !(factor_anew() && attempt(centre, is_model))) return false;

@@ -38,6 +38,8 @@ class KluSolver {
   bool solve(double* x, const double* centre, bool is_model);
 
   int singular_column() const { return singular_; }
+  /// The smallest pivot over the largest, of the last factor(); 0 where there is none.
+  double pivot_ratio();
   /// Of L and U.
   long entries() const { return numeric_ ? numeric_->lnz + numeric_->unz : 0; }
   /// Pivots chosen so far.

@@ -287,6 +287,12 @@ double size_of(const Pack<W, L>& x) {
     return sum_of(positive).v;
 }
 
+/// Whether an S has derivatives along directions, of which each may have something of its own in d.
+template <class S>
+constexpr bool has_directions = false;
+template <class S, int N>
+constexpr bool has_directions<Dual<S, N>> = true;
+
 /// Of a single state the pivots are kept: its failures and faded rows are told.
 template <class S>
 constexpr bool keeps_pivots = true;

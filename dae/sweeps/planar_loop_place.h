@@ -243,8 +243,11 @@ template <class In>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_couplers(const In& q, const In& x,
                                                            const RightSide<S>& right) {
   for (std::size_t i = 0; i < places_.size(); ++i)
-    if (const Loop& l = loops_->loops[i]; l.is_coupler())
+    if (const Loop& l = loops_->loops[i]; l.is_coupler()) {
       coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
+      if constexpr (has_directions<S>)
+        if (besides_) coupled_[i] = coupled_[i] + besides_[l.row];
+    }
 }
 
 }  // namespace momenta

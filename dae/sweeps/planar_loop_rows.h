@@ -206,6 +206,8 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_
       a.Dy = a.Dy + sign * y;
       a.Dn = a.Dn + (nx * y - ny * x);
     }
+    if constexpr (has_directions<S>)
+      if (besides_ && end.first) o.d.add_pair(end.slot, besides_[end.row], besides_[end.row + 1]);
     if (!asks(end, right)) return;
     const Vec2<S> d = tie_bias(k, end, arm, right);
     o.d.add_pair(end.slot, d[0], d[1]);
@@ -225,6 +227,8 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_
     a.Dy = a.Dy + (x * fy + y * fx);
     a.Dn = a.Dn + (x * n0 + y * n1);
   }
+  if constexpr (has_directions<S>)
+    if (besides_ && end.first) o.d.add_pair(end.slot, besides_[end.row], besides_[end.row + 1]);
   if (end.first && biased(right)) o.d.add_pair(end.slot, s.dx, s.dy);
 }
 
@@ -259,6 +263,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(std::size_t k, std::size_
       a.Dy = a.Dy + centre * fy;
       a.Dn = a.Dn + centre * n;
     }
+    if constexpr (has_directions<S>)
+      if (besides_ && end.first) o.d.add(slot + row, besides_[l.row + row]);
     if (asked) o.d.add(slot + row, end.tie ? d[row] : row_bias(loop, row, right));
   }
 }

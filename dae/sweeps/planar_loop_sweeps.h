@@ -94,6 +94,9 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     return tree.links.size() * (sizeof(Revolute) + 3 * sizeof(S)) +
            loops.loops.size() * (sizeof(Place) + sizeof(Pair));
   }
+  /// Of an S with directions: what d of the second row has besides (m), in all solutions from now
+  /// on; null: nothing.
+  void add_to_rows(const S* besides) { besides_ = besides; }
   using Base::singular_joint;
   static bool weak_looped_branch() { return false; }  ///< no branch is folded in a plane
   /// Pivots of the last solution: calls report(row of Φ, w, τ).
@@ -279,6 +282,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   std::vector<Row> rows_;          ///< by row of Φ, in closing order within a loop
   std::vector<Pair> pairs_;        ///< by loop
   const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
+  const S* besides_ = nullptr;
   std::optional<PlanarBodyForces<S>> forces_;
 };
 

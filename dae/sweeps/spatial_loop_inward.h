@@ -61,6 +61,9 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter_right_side(std::size_t lo
   const Loop& l = loops_->loops[loop];
   const SpatialLoopPlace<S>& s = places_[loop];
   const int slot = plan_->slot[loop];
+  if constexpr (has_directions<S>)
+    if (besides_)
+      for (int row = 0; row < l.rows; ++row) d.add(slot + row, besides_[l.row + row]);
   if (right.positions != 0)
     for (int row = 0; row < l.rows; ++row) d.add(slot + row, right.positions * s.position(l, row));
   if constexpr (Momentum) {

@@ -38,6 +38,8 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::place_loops(const In& q, const 
     if constexpr (!of_looped_branches)
       if (l.is_coupler()) {
         coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
+        if constexpr (has_directions<S>)
+          if (besides_) coupled_[i] = coupled_[i] + besides_[l.row];
         continue;
       }
     const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);

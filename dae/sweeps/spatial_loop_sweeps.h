@@ -92,6 +92,9 @@ class SpatialLoopSweeps {
   const Force& looped_branches_rates(const Vec3<S>& v, const Vec3<S>& w, const RightSide<S>& right,
                                      const Out& impulse, Out rate);
 
+  /// Of an S with directions: what d of the second row has besides (m), in all solutions from now
+  /// on; null: nothing.
+  void add_to_rows(const S* besides) { besides_ = besides; }
   int singular_joint() const { return singular_joint_; }
   /// Whether the last solution closed a folded branch on too weak a pivot: it is then wrong.
   bool weak_looped_branch() const { return weak_looped_branch_; }
@@ -282,6 +285,7 @@ class SpatialLoopSweeps {
   std::vector<Articulated<S>> looped_branches_;  ///< by body: what folded branches add to it
   std::vector<Motion> taken_;                    ///< by body: Ω of those that take branches
   const S* compliance_ = nullptr;                ///< of the call under way: right.compliance
+  const S* besides_ = nullptr;                   ///< add_to_rows()
   std::vector<std::unique_ptr<Packs>> packs_;
   const LoopedBranchGroups* branches_beside_ = nullptr;  ///< those that packs_ hold
   const LoopedBranchGroups* branches_apart_ = nullptr;   ///< the same, while packs_ sweep them

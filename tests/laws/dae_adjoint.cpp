@@ -107,6 +107,7 @@ TEST(Adjoint, OfTheRightHandSideIsItsDerivativeTransposed) {
       std::vector<double> f(at.y.size());
       ASSERT_TRUE(at.ode().rhs(0, at.y.data(), f.data())) << at.ode().failure();
       FormTangents tangents(at.mechanism, at.ode(), at.others);
+      tangents.by_rows();  // by its own way
       MatrixXd fy;
       ASSERT_TRUE(tangents.rates(0, at.y.data(), f.data(), MatrixXd::Identity(size, size), fy));
       const std::vector<OtherParameter> none;
@@ -677,6 +678,91 @@ TEST(Adjoint, HasLossesAlongLinesInTwoSweeps) {
   EXPECT_EQ(skew_ones, 3);
   const SceneText formulas = example("lagrangian/double_pendulum.toml");
   EXPECT_EQ(make_line_losses(Mechanism(formulas.scene(), formulas.options)), nullptr);
+}
+
+/// Tangents by the sweeps, and of inertias and forces from tables, against rows, differences of
+/// mechanisms with neighbouring numbers and a factorised matrix.
+TEST(Tangents, BySweepsAreThoseByRows) {
+  int swept = 0;
+  struct Row {
+    std::string text;
+    std::vector<std::string> by;
+  };
+  for (const Row& row : std::vector<Row>{
+           {four_bar,
+            {"g", "crank", "coupler", "k", "mass", "O.q", "body.rocker.mass", "gravity.0",
+             "body.crank.mass", "loop.B.origin.child.0"}},
+           {sprung_four_bar(),
+            {"g", "crank", "coupler", "k", "mass", "O.q", "joint.O.stiffness", "joint.O.damping",
+             "joint.O.friction", "joint.O.rotor_inertia", "force.S.rest", "force.T.value",
+             "force.sum.stiffness", "force.sum.damping", "gravity.0", "body.rocker.mass"}},
+           {slide_and_coupler, {"turn", "loop.D.length", "loop.Q.offset", "body.b.com.0"}},
+           {in_space,
+            {"tilt", "end_tilt", "loop.L.origin.child.2", "loop.D.length", "force.S.stiffness",
+             "joint.J1.rotor_inertia", "joint.J3.friction", "gravity.0", "body.c.mass",
+             "body.d.com.1", "body.a.inertia.1"}},
+           {reading::text_of(MOMENTA_SOURCE_DIR "/examples/andrews/scene.toml"),
+            {"body.crank.mass", "loop.E4.origin.child.1", "loop.E6.origin.child.0"}}}) {
+    const SceneText scene = of_text(row.text);
+    const Mechanism sizes(scene.scene(), scene.options);
+    const std::vector<RunVariable> variables = run_variables(scene, sizes, row.by);
+    const auto slopes = make_number_slopes(sizes, false);
+    const std::vector<OtherParameter> by_tables =
+                                          other_parameters(scene, sizes, variables, {slopes.get()}),
+                                      by_rows = other_parameters(scene, sizes, variables);
+    const auto k = static_cast<Index>(row.by.size());
+    for (FormOptions options :
+         {gauge(Gauge::Kind::reset), gauge(Gauge::Kind::flip), gauge(Gauge::Kind::leak, 3, 7)}) {
+      options.project = true;
+      AtAState at(scene, options, k, true);
+      OdeForm& form = at.ode();
+      FormTangents tangents(at.mechanism, form, by_tables), expected(at.mechanism, form, by_rows);
+      swept += tangents.swept();
+      expected.by_rows();
+      const auto expect_same_columns = [&](const MatrixXd& found, const MatrixXd& wanted) {
+        const double size = wanted.norm();
+        for (Index j = 0; j < k; ++j)
+          EXPECT_LT((found.col(j) - wanted.col(j)).norm(), 1e-12 * size)
+              << row.by[static_cast<std::size_t>(j)];
+      };
+      const auto size = static_cast<Index>(at.y.size());
+      const MatrixXd Y = VectorXd::LinSpaced(size, 1, 2).asDiagonal() * MatrixXd::Random(size, k);
+      std::vector<double> f(at.y.size()), after = at.y;
+      ASSERT_TRUE(form.rhs(0, at.y.data(), f.data())) << form.failure();
+      ASSERT_EQ(form.pivots().faded, 0);
+      MatrixXd found, wanted;
+      ASSERT_TRUE(tangents.rates(0, at.y.data(), f.data(), Y, found));
+      ASSERT_TRUE(expected.rates(0, at.y.data(), f.data(), Y, wanted));
+      expect_same_columns(found, wanted);
+      bool changed = false;
+      ASSERT_TRUE(form.after_step(0, after.data(), changed)) << form.failure();
+      found = wanted = Y;
+      ASSERT_TRUE(tangents.after_step(0, at.y.data(), after.data(), found));
+      ASSERT_TRUE(expected.after_step(0, at.y.data(), after.data(), wanted));
+      expect_same_columns(found, wanted);
+    }
+  }
+  EXPECT_EQ(swept, 9);  // not springs of sums, nor in space springs of points
+}
+
+TEST(Tangents, OfManyLoopsTakeTheSparseMatrix) {
+  const Mechanism mechanism(equations::row_of_four_bars(12, 1.1, 1), {.cut = CutChoice::scene});
+  const auto e = mechanism.evaluation<double>();
+  StageMatrix sparse(mechanism), dense(mechanism);
+  dense.dense();
+  ASSERT_TRUE(sparse.is_sparse());
+  const VectorXd q = assemble(mechanism).start.q;
+  const Index size = mechanism.nv() + mechanism.m();
+  const MatrixXd right = MatrixXd::Random(size, 3);
+  for (const double turned : {0.0, 0.3, 0.6}) {
+    e->place(0, VectorXd(q.array() + turned).eval().data());
+    sparse.factor(*e);
+    dense.factor(*e);
+    EXPECT_FALSE(sparse.singular());
+    EXPECT_FALSE(dense.singular());
+    const MatrixXd expected = dense.solve(right);
+    EXPECT_LT((sparse.solve(right) - expected).norm(), 1e-12 * expected.norm());
+  }
 }
 
 /// A run that is recorded, and the stages of its steps computed from their starts.

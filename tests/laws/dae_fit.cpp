@@ -502,6 +502,7 @@ TEST(Fit, WhatCannotBeDoneIsSaid) {
               ParametricMechanism(traced_four_bar(), "four-bar", {}, {"tilt", "tilt"});
             }),
             "'tilt' is varied twice");
+  EXPECT_EQ(FittedParameter::from_text("parameters.crank=1:2").name, "crank");
   EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=1"); }),
             "--vary 'crank=1': expected NAME or NAME=FROM:TO, as in crank=0.1:2");
   EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=2:1"); }),

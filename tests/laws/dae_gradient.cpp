@@ -266,6 +266,48 @@ TEST(Gradient, ByANumberIsThatByTheParameterItIsMadeOf) {
   EXPECT_EQ(r.gradient[0], r.gradient[1]);
 }
 
+TEST(Gradient, ByParametersThatStandInFormulas) {
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string text = four_bar;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  const std::string spring = "stiffness = \"k\"\ndamping = 0.4\nrest = 0.6\n";
+  const std::string loop = R"toml(kind = "revolute"
+parent = "coupler"
+child = "rocker"
+origin = { parent = ["coupler", 0, 0], child = ["rocker", 0, 0] }
+)toml";
+  for (const auto& [text, first] : std::vector<std::pair<std::string, std::string>>{
+           {changed(spring, "law = \"k*(length-0.6) + g*(length-0.6)^3 + 0.4*rate\"\n"), "k"},
+           {four_bar + "[[drive]]\njoint = \"O\"\nkind = \"formula\"\n"
+                       "law = \"1.2 + mass*sin(idle*t)\"\n",
+            "idle"},
+           {changed(loop,
+                    "kind = \"equation\"\nequation = \"(E.x - F.x)^2 + (E.y - F.y)^2 + "
+                    "2*(E.x - F.x) + (idle/3 - 1) = 0\"\n") +
+                "[[marker]]\nname = \"E\"\nbody = \"coupler\"\npoint = [2, 0, 0]\n"
+                "[[marker]]\nname = \"F\"\nbody = \"rocker\"\npoint = [1.5, 0, 0]\n",
+            "idle"},
+           {four_bar + "[[force]]\nkind = \"torque\"\njoint = \"O\"\n"
+                       "law = \"-idle*q - 0.2*k*u\"\n[[force]]\nkind = \"potential\"\n"
+                       "V = \"0.5*k*P.x^2 + idle*P.y\"\n",
+            "k"}}) {
+    const SceneText scene = of_text(text);
+    GradientRequest request =
+        asked("P.x + 0.3*C.u", {"parameters." + first, "mass"}, "momentum", "reset", 0.1, 0.01);
+    request.mode = GradientMode::forward;
+    const GradientResult forward = gradient(scene, request);
+    EXPECT_EQ(forward.variables[0].name, first);
+    EXPECT_GT(std::abs(forward.gradient[0]), 1e-4);
+    request.mode = GradientMode::adjoint;
+    const GradientResult adjoint = gradient(scene, request);
+    EXPECT_LT((forward.gradient - adjoint.gradient).norm(), 1e-12 * forward.gradient.norm());
+    request.mode = GradientMode::forward;
+    expect_differences(scene, request, 1e-8);
+  }
+}
+
 TEST(Gradient, TellsWhatDoesNotMatterAndWhatIsNotSmooth) {
   const SceneText scene = of_text(four_bar);
   const GradientResult r =
@@ -292,6 +334,8 @@ TEST(Gradient, RefusesInOneSentence) {
   EXPECT_EQ(refusal(scene, asked("P.x", {"crnk"}, "momentum", "reset")),
             "'crnk' is no parameter of the scene and no start value; did you mean 'crank'?");
   EXPECT_EQ(refusal(scene, asked("P.x", {"crank", "crank"}, "momentum", "reset")),
+            "'crank' is named twice; expected it once");
+  EXPECT_EQ(refusal(scene, asked("P.x", {"crank", "parameters.crank"}, "momentum", "reset")),
             "'crank' is named twice; expected it once");
   EXPECT_EQ(refusal(scene, asked("P.x > 1", {"crank"}, "momentum", "reset")),
             "'P.x > 1' is a comparison; expected a formula with a value");

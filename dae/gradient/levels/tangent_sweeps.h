@@ -13,7 +13,7 @@
 
 namespace momenta {
 
-/// (q, p, t) → (u, σ, ṗ), eqs. (7)-(8), and its derivative along (δq, δp), without leak and β.
+/// (q, p, t) → (u, σ, ṗ), eqs. (7)-(8), and its derivative along (δq, δp).
 class TangentSweeps {
  public:
   /// Plain arrays of nv numbers, σ of m.
@@ -22,9 +22,13 @@ class TangentSweeps {
     double *sigma, *dsigma;  ///< of the rows as they are swept
   };
   virtual ~TangentSweeps() = default;
-  /// False where a joint has no inertia or a branch is weak. O(bodies + m)
+  /// κ of (8) and β of (7) [1/s], zero until then.
+  virtual void feed_back(double leak, double beta) = 0;
+  /// False where a joint has no inertia or a branch is weak. `besides`: what the derivative of the
+  /// second row has besides (m), of the rows as they are swept; null: zero. O(bodies + m)
   virtual bool operator()(double t, const double* q, const double* p, const double* dq,
-                          const double* dp, const Result& result) = 0;
+                          const double* dp, const Result& result,
+                          const double* besides = nullptr) = 0;
 };
 
 /// Where the numbers of a mechanism's tables stand among the slopes, in this order:

@@ -39,14 +39,22 @@ class TangentSweepsAt final : public TangentSweeps {
       : sweeps_(tree, swept.loops, swept.plan),
         nv_(tree.model->nv),
         m_(swept.loops.rows),
-        numbers_(static_cast<std::size_t>(2 * nv_ + m_)) {
+        numbers_(static_cast<std::size_t>(2 * nv_ + m_)),
+        besides_(static_cast<std::size_t>(m_)) {
     right_.fade = fade;
     right_.rates = true;
     right_.body_forces = body_forces;
   }
 
+  void feed_back(double leak, double beta) override {
+    right_.leak = leak;
+    right_.positions = beta;
+  }
   bool operator()(double t, const double* q, const double* p, const double* dq, const double* dp,
-                  const Result& to) override {
+                  const Result& to, const double* besides) override {
+    sweeps_.add_to_rows(besides ? besides_.data() : nullptr);
+    for (int i = 0; besides && i < m_; ++i)
+      besides_[static_cast<std::size_t>(i)].b[0] = Pack<1, Level>(besides[i]);
     S *const u = numbers_.data(), *const pdot = u + nv_, *const sigma = pdot + nv_;
     const DirectionsIn<Level> momenta{p, dp};
     if (!sweeps_(S(t), DirectionsIn<Level>{q, dq}, momenta, momenta, right_,
@@ -71,6 +79,7 @@ class TangentSweepsAt final : public TangentSweeps {
   RightSide<S> right_;
   int nv_, m_;
   std::vector<S> numbers_;  ///< u, ṗ, σ
+  std::vector<S> besides_;  ///< of the second row
 };
 
 template <class Space, int Level>
