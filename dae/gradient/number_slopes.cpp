@@ -97,12 +97,14 @@ class NumberSlopesOf final : public NumberSlopes {
     // Of a joint stiffness, rest, damping, torque, friction and rotor stand last; of a spring
     // stiffness, rest, damping and, between points, the offset.
     std::vector<Index> all;
-    for (Index k = places_.joints; k < places_.loops; k += Places::of_joint)
-      for (const Index i : {4, 2}) all.push_back(k + Places::of_joint - i);
-    for (Index k = places_.springs; k < places_.sums; k += Places::of_spring)
-      all.push_back(k + Places::of_spring - 2);
-    for (Index k = places_.sums; k < places_.size; k += Places::of_sum)
-      all.push_back(k + Places::of_sum - 1);
+    const auto put = [&all](Index first, Index stride, std::size_t count, Index from_end) {
+      for (Index k = 1; k <= static_cast<Index>(count); ++k)
+        all.push_back(first + stride * k - from_end);
+    };
+    for (const Index from_end : {4, 2})
+      put(places_.joints, Places::of_joint, model_.bodies.size(), from_end);
+    put(places_.springs, Places::of_spring, model_.springs.size(), 2);
+    put(places_.sums, Places::of_sum, model_.coordinate_springs.size(), 1);
     return all;
   }
 
