@@ -58,6 +58,15 @@ class Crossings {
     zero_ = t;
     sign_ = -1;
   }
+  /// Of g where it was not zero last; 0: not known.
+  int sign() const { return sign_; }
+  /// Begins anew at the next step, before which g had this sign: another sign at once is a crossing
+  /// there.
+  void restart_with(int sign) {
+    restart();
+    begun_ = sign != 0;
+    sign_ = sign;
+  }
   /// Begins anew at the next step, as at the start.
   void restart() { *this = Crossings(tolerance_); }
   /// Between two steps.

@@ -45,7 +45,8 @@ class EventWatch {
         crossings_(all_events_, Crossings(tolerance_)),
         told_(all_events_),
         at_points_(Crossings::points, std::vector<double>(all_events_)),
-        all_(all_events_) {
+        all_(all_events_),
+        signs_(events_.size()) {
     for (std::size_t k = 0; k < all_events_; ++k)
       of_event_.emplace_back([this, k](double t) { return value(t, k, false); });
   }
@@ -63,6 +64,8 @@ class EventWatch {
   /// and those of stops at that very time.
   const std::vector<Found>& step(double t0, double t1, std::vector<std::string>& remarks) {
     found_.clear();
+    passed_.clear();
+    for (std::size_t k = 0; k < first_stop(); ++k) signs_[k] = crossings_[k].sign();
     // Behind an impact the next one may follow within the step, and not before the pause is over:
     // what a dense output shows of that stop before is its error.
     if (pause_until_ > t0 && pause_until_ < t1) {
@@ -79,13 +82,10 @@ class EventWatch {
                      [](const Found& a, const Found& b) { return a.crossing.t < b.crossing.t; });
     const auto end =
         std::find_if(found_.begin(), found_.end(), [&](const Found& f) { return ends(f); });
-    if (end != found_.end()) {
-      const double last = end->crossing.t + 10 * tolerance_;
-      found_.erase(std::remove_if(end + 1, found_.end(),
-                                  [&](const Found& f) {
-                                    return !is_stop(*end) || !is_stop(f) || f.crossing.t > last;
-                                  }),
-                   found_.end());
+    if (end != found_.end() && is_stop(*end)) {
+      phase_ends(end->crossing.t);
+    } else if (end != found_.end()) {
+      found_.erase(end + 1, found_.end());
     }
     return found_;
   }
@@ -116,11 +116,32 @@ class EventWatch {
       of_one_.clear();
       crossings_[k].step(t0, t1, values, of_event_[k], of_one_);
       for (Crossing& c : of_one_) {
-        if (!wanted(k, c.up) || (c.t < pause_until_ && pausing(k))) continue;
+        const bool told = wanted(k, c.up);
+        if (k >= first_stop() && (!told || (c.t < pause_until_ && pausing(k)))) continue;
         if (exact_) c.t = exact_root(c.t, k, t0, t1);
-        found_.push_back({k, c});
+        (told ? found_ : passed_).push_back({k, c});
       }
     }
+  }
+  /// At a stop, with those that are met at the same time. The rest of the step is no motion: the
+  /// numbers of events have the signs of the time before it, so that one that the impact turns is
+  /// told at the start of the next phase.
+  void phase_ends(double t) {
+    const double same = 10 * tolerance_;
+    for (std::size_t k = 0; k < first_stop(); ++k) {
+      for (std::size_t i = 0; i < Crossings::points && signs_[k] == 0; ++i)
+        signs_[k] = at_points_[i][k] > 0 ? 1 : at_points_[i][k] < 0 ? -1 : 0;
+      double last = -std::numeric_limits<double>::infinity();
+      for (const std::vector<Found>* all : {&found_, &passed_})
+        for (const Found& f : *all)
+          if (f.event == k && f.crossing.t <= t - same && f.crossing.t >= last) {
+            last = f.crossing.t;
+            signs_[k] = f.crossing.up ? 1 : -1;
+          }
+      crossings_[k].restart_with(signs_[k]);
+    }
+    std::erase_if(
+        found_, [&](const Found& f) { return f.crossing.t > (is_stop(f) ? t + same : t - same); });
   }
   bool pausing(std::size_t k) const {
     return k >= first_stop() && stops_->was_met(k - first_stop());
@@ -191,7 +212,8 @@ class EventWatch {
   std::vector<std::vector<double>> at_points_;
   std::vector<double> all_;
   std::vector<std::function<double(double)>> of_event_;
-  std::vector<Found> found_;
+  std::vector<Found> found_, passed_;  ///< of the step, and those of directions that are not told
+  std::vector<int> signs_;             ///< of events, before the step
   std::vector<Crossing> of_one_;
 };
 

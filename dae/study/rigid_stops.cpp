@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -126,6 +127,7 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
     if (const auto met = last_.find(i); met != last_.end() && t - met->second < shortest * span_)
       soft.insert(i), stuck.insert(i);
   for (const std::size_t i : hit) last_[i] = t;
+  std::set<std::size_t> left;  // held, and pushed off by the impact
   for (std::size_t trial = 0; trial <= 4 * stops_.size(); ++trial) {
     std::vector<StopAtImpact> at;
     for (const std::size_t i : hit)
@@ -133,14 +135,16 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
                     false, stuck.contains(i)});
     for (const std::size_t i : held_)
       if (std::find(hit.begin(), hit.end(), i) == hit.end())
-        at.push_back({stops_[i].u, stops_[i].side, 0, true});
+        at.push_back({stops_[i].u, stops_[i].side, 0, true, stuck.contains(i)});
     Eigen::VectorXd u = before;
     taken = hit.empty() ? 0 : impact_.jump(t, q, u, at);
     // What an impact pushes off no longer holds.
     const double still = 1e-9 * (1 + u.cwiseAbs().maxCoeff());
-    if (std::erase_if(held_,
-                      [&](std::size_t i) { return stops_[i].side * u[stops_[i].u] < -still; }) > 0)
-      continue;
+    const auto is_off = [&](std::size_t i) {
+      return !stuck.contains(i) && stops_[i].side * u[stops_[i].u] < -still;
+    };
+    std::copy_if(held_.begin(), held_.end(), std::inserter(left, left.end()), is_off);
+    if (std::erase_if(held_, is_off) > 0) continue;
     std::set<std::size_t> holding = held_;
     Acting& acting = with(holding);
     const Mechanism& now = *acting.mechanism;
@@ -161,8 +165,17 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
       // With e = 0 already it holds, and what is left of its rate, on either side, is an error.
       if (!soft.insert(i).second) held_.insert(i), stuck.insert(i);
     }
+    // What is pushed off for less than a flight holds on: else two that push each other off never
+    // come to rest.
+    for (const std::size_t i : left) {
+      const Stop& stop = stops_[i];
+      const double off = -stop.side * u[stop.u], pressed = stop.side * start.udot[stop.u];
+      if (holding.contains(i) || !(pressed > 0) || 2 * off / pressed >= shortest * span_) continue;
+      again |= held_.insert(i).second;
+      stuck.insert(i);
+    }
     for (const std::size_t i : holding)
-      if (push(now, i, start.lambda) < 0) again |= held_.erase(i) > 0;
+      if (push(now, i, start.lambda) < 0) again |= held_.erase(i) > 0, left.erase(i);
     if (again) continue;
     for (std::size_t k = 0; k < hit.size(); ++k) {
       const Stop& stop = stops_[hit[k]];

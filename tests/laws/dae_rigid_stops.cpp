@@ -48,7 +48,7 @@ RunResult run(const Scene& scene, const Method& m, double end, int samples = 100
   request.settings.step = m.step;
   request.settings.end_time = end;
   request.settings.samples = samples;
-  request.keep_trajectory = true;
+  request.keep_trajectory = request.events = true;
   return run_form(mechanism, assemble(mechanism).start, request);
 }
 
@@ -344,6 +344,122 @@ TEST(RigidStops, SeveralAtOnce) {
   EXPECT_EQ(impacts[0].t, impacts[1].t);
   EXPECT_NE(impacts[0].joint, impacts[1].joint);
   EXPECT_EQ(contacts(result, "held").size(), 2U);
+}
+
+/// Two slides on legs that meet in a knee, which falls and pushes both against their stops.
+Scene toggle(double restitution) {
+  return parse_scene(R"(
+gravity = [0, 0, -9.81]
+body = [
+  { name = "a", mass = 1, shape = { kind = "box", size = [0.1, 0.1, 0.1] } },
+  { name = "b", mass = 1, shape = { kind = "box", size = [0.1, 0.1, 0.1] } },
+  { name = "c", mass = 0.5, shape = { kind = "rod", length = 1 } },
+  { name = "d", mass = 0.5, shape = { kind = "rod", length = 1 } },
+]
+[[joint]]
+name = "A"
+kind = "prismatic"
+child = "a"
+axis = "x"
+position = 0.5
+limits = [-3, 0.7]
+restitution = )" + std::to_string(restitution) +
+                         R"(
+[[joint]]
+name = "B"
+kind = "prismatic"
+child = "b"
+axis = "-x"
+position = 0.5
+limits = [-3, 0.7]
+restitution = )" + std::to_string(restitution) +
+                         R"(
+[[joint]]
+name = "C"
+kind = "revolute"
+parent = "a"
+child = "c"
+axis = "-y"
+position = 2.0943951023931953
+[[joint]]
+name = "D"
+kind = "revolute"
+parent = "b"
+child = "d"
+axis = "-y"
+position = 1.0471975511965976
+[[loop]]
+name = "knee"
+kind = "revolute"
+parent = "c"
+child = "d"
+axis = "y"
+origin = { parent = [1, 0, 0], child = [1, 0, 0] }
+)",
+                     "toggle.toml");
+}
+
+// Two stops that push each other off come to rest: at rates below what a flight takes the held one
+// holds on.
+TEST(RigidStops, ThatPushEachOtherOffComeToRest) {
+  for (const Method& m :
+       {Method{"momentum", "dop853", 0, 0}, Method{"momentum-index2", "radau5", 0, 0},
+        Method{"acceleration-index3", "ida", 0, 0}}) {
+    const RunResult result = run(toggle(0.6), m, 2, 20, 1e-8);
+    ASSERT_EQ(result.status, "done") << m.form << result.reason;
+    EXPECT_LT(result.stops.size(), 300U) << m.form;
+    EXPECT_EQ(contacts(result, "held").size(), contacts(result, "released").size() + 2) << m.form;
+    EXPECT_LT(result.energy_error_max, 1e-3) << m.form;
+  }
+}
+
+TEST(RigidStops, HoldOnAtPushesThatAreShorterThanAFlight) {
+  Scene scene = toggle(0.6);
+  scene.held = {"A", "B"};
+  const Mechanism mechanism(scene);
+  ASSERT_EQ(mechanism.tree().bodies[2].name, "b");
+  const auto at = [&](double right, double rate) {
+    VectorXd q = assemble(mechanism).start.q, u = VectorXd::Zero(4);
+    q[0] = 0.7, q[2] = right, u[2] = rate;
+    return assemble(mechanism, 1, q, u).start;
+  };
+  RigidStops stops(mechanism, 2);
+  RunResult told;
+  double taken = 0;
+  stops.begin(assemble(mechanism).start, told);
+  const Start first = at(0.69, 0), second = at(0.7, 2e-8);
+  stops.meet(1, first.q, first.u, {1}, told, taken);
+  ASSERT_EQ(contacts(told, "held").size(), 1U);
+  stops.meet(1.1, second.q, second.u, {3}, told, taken);
+  EXPECT_EQ(contacts(told, "held").size(), 2U);
+  EXPECT_TRUE(contacts(told, "released").empty());
+}
+
+// An event whose number an impact turns is told at the impact, whatever the rest of the step shows:
+// rates of the ball pass zero at each impact and at each top, up and down by turns, and no height
+// below the stop is passed.
+TEST(RigidStops, TurnTheNumbersOfEvents) {
+  const Scene scene = slide(0.5,
+                            "position = 0.6\n[[event]]\nwhen = \"A.u\"\n[[event]]\nname = "
+                            "\"beyond\"\nwhen = \"A.q + 0.001\"\n");
+  for (const Method& m : methods) {
+    const RunResult result = run(scene, m, 2);
+    ASSERT_EQ(result.status, "done") << m.form << result.reason;
+    const auto impacts = contacts(result, "impact");
+    ASSERT_GE(impacts.size(), 12U) << m.form;
+    std::vector<double> ups, downs;
+    for (const auto& event : result.events) {
+      ASSERT_NE(event.name, "beyond") << m.form << event.t;
+      if (event.t > impacts[11].t) break;
+      ASSERT_EQ(event.up, ups.size() == downs.size()) << m.form << event.t;
+      (event.up ? ups : downs).push_back(event.t);
+    }
+    ASSERT_GE(downs.size(), 10U) << m.form;
+    for (std::size_t k = 0; k < 10; ++k) {
+      EXPECT_NEAR(ups[k], impacts[k].t, 1e-12) << m.form << k;
+      EXPECT_NEAR(downs[k], 0.5 * (impacts[k].t + impacts[k + 1].t), 10 * m.bound) << m.form << k;
+    }
+  }
 }
 
 TEST(RigidStops, RefuseAStartBeyondThem) {
