@@ -88,8 +88,12 @@ bool FormTangents::momentum(double t, const VectorXd& q, const double* p, const 
   const MomentumRows& rows = with_rates;
   const Index k = derivatives_.directions();
   const VectorXd x = momenta::joined(q, u_, sigma_);
-  explicit_ = of_rates ? derivatives_.by_parameters(with_rates, x, 2 * nv_ + m_)
-                       : derivatives_.by_parameters(rows, x, nv_ + m_);
+  const Index size = of_rates ? 2 * nv_ + m_ : nv_ + m_;
+  if (!derivatives_.any_parameters())
+    explicit_.setZero(size, k);
+  else
+    explicit_ = of_rates ? derivatives_.by_parameters(with_rates, x, size)
+                         : derivatives_.by_parameters(rows, x, size);
   if (tables_) {
     tables_->at(t, q, u_, sigma_.data(), {leak_, beta_});
     explicit_.topRows(nv_) += tables_->r1;
@@ -113,7 +117,9 @@ bool FormTangents::momentum(double t, const VectorXd& q, const double* p, const 
 bool FormTangents::rates(double t, const double* y, const double* ydot, const MatrixXd& Y,
                          MatrixXd& Ydot) {
   const VectorXd q = Map<const VectorXd>(y, nq_);
-  const MatrixXd dq = Y.topRows(nq_), dx = Y.bottomRows(nv_);
+  dq_ = Y.topRows(nq_);
+  dx_ = Y.bottomRows(nv_);
+  const MatrixXd &dq = dq_, &dx = dx_;
   sigma_ = Map<const VectorXd>(form_.multipliers().data(), m_);
   const Index k = derivatives_.directions();
   const bool quasi = mechanism_.plan().quasi_velocities;

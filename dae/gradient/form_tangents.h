@@ -87,7 +87,7 @@ class FormTangents {
   Eigen::VectorXd u_, sigma_;
   Eigen::MatrixXd du_, dsigma_;
   Eigen::MatrixXd explicit_;  ///< ∂/∂θ of the rows of (7) and, where asked for, (8)
-  Eigen::MatrixXd dpdot_, along_p_, besides_;
+  Eigen::MatrixXd dq_, dx_, dpdot_, along_p_, besides_;
   int faded_ = -1;  ///< rows, in the first stage
 };
 

@@ -78,12 +78,13 @@ struct GradientResult {
 
 /// @throws std::invalid_argument for what is asked; SceneError where the start or the run has no
 /// derivatives, or the run ends before its time, one sentence.
-/// Cost beside that of a run, forward: a stage takes two evaluations in dual numbers for eight θ,
-/// the factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
-/// parameter. Adjoint: an evaluation of the sweeps in dual numbers of one direction, or where they
-/// do not carry the loops two of rows and that factorisation, for all θ; six plain evaluations for
-/// each parameter that is no number of number_slopes.h; a state of memory a stage
-/// (recorded_run.h).
+/// Cost beside that of a run, forward: a stage takes an evaluation of the sweeps in dual numbers
+/// for eight θ, or where they do not carry the loops, and on accelerations, one or two of rows and
+/// the factorisation of the matrix of (7); and of parameters that are no numbers of number_slopes.h
+/// six plain evaluations of rows each. Adjoint: an evaluation of the sweeps in dual numbers of one
+/// direction, or where they do not carry the loops two of rows and that factorisation, for all θ;
+/// six plain evaluations for each parameter that is no number of number_slopes.h; a state of memory
+/// a stage (recorded_run.h).
 GradientResult gradient(const SceneText& scene, const GradientRequest& request);
 
 }  // namespace momenta

@@ -10,6 +10,9 @@
 namespace momenta {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+
 template <class Space>
 using TreeOf = decltype(build_links(std::declval<const Model<Space>&>()));
 
@@ -78,9 +81,6 @@ class SweptTangentOf final : public SweptTangent {
   }
 
  private:
-  using Index = Eigen::Index;
-  using MatrixXd = Eigen::MatrixXd;
-
   bool one(double t, const double* q, const double* p, const double* dq, const double* dp,
            const double* besides) {
     if (!(*sweeps_)(t, q, p, dq, dp,

@@ -62,7 +62,7 @@ bool TangentSystem::rhs(double t, const double* y, double* ydot) {
   if (!form_.rhs(t, y, ydot)) return fail(form_.failure());
   if (corrected_stages_) return fail_at(t, too_near_to_pose);
   if (looking_ == 0) passages_.take(t, form_.pivots());
-  Y_ = tangents(y);
+  Y_ = Map<const MatrixXd>(y + n_ + extra(), n_, directions_);
   if (!tangents_.rates(t, y, ydot, Y_, Ydot_)) return fail_at(t, dependent_loops);
   Map<MatrixXd>(ydot + n_ + extra(), n_, directions_) = Ydot_;
   if (!integrand_) return true;
