@@ -334,10 +334,12 @@ TEST(LoopSweeps, LargeBatchesGoStateByState) {
 }
 
 TEST(LoopSweeps, CodeOfALevelIsItsOwn) {
-  expect_own_symbols(MOMENTA_BINARY_DIR "/dae", "*_level[134].cpp.o",
-                     {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<", "TangentSweepsAt<",
-                      "tangent_sweeps_at<", "KineticSweepAt<", "kinetic_sweep_at<",
-                      "NumberSweepAt<", "number_sweep_at<", "LoopNumbers<", "PlacedAlong<"});
+  expect_own_symbols(
+      MOMENTA_BINARY_DIR "/dae", "*_level[134].cpp.o",
+      {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<", "TangentSweepsAt<", "tangent_sweeps_at<",
+       "KineticSweepAt<", "kinetic_sweep_at<", "NumberSweepAt<", "number_sweep_at<", "LoopNumbers<",
+       "PlacedAlong<", "DirectionSweepsAt<", "direction_sweeps_at<", "NumberRowsAt<",
+       "number_rows_at<", "MovedLoops<", "MixedSweepAt<", "mixed_sweep_at<"});
 }
 
 /// Legs folded onto a platform; the same loops as more slots than there are go to the matrix.
