@@ -81,9 +81,10 @@ void StageMatrix::factor(Evaluation<double>& e) {
   }
   if (sparse_) {
     for (std::size_t k = 0; k < values_.size(); ++k) sparse_->matrix().set(k, values_[k]);
-    singular_ = !sparse_->factor(soft_) || !(sparse_->pivot_ratio() > singular_below);
-    dense_ = false;
-    return;
+    dense_ = !sparse_->factor(soft_) || !(sparse_->pivot_ratio() > singular_below);
+    singular_ = false;
+    if (!dense_) return;
+    // Pivots chosen for sparsity may be small though the matrix is regular: the dense ones decide.
   }
   fill_dense();
   lu_.compute(matrix_);
