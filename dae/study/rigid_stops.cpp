@@ -63,6 +63,11 @@ double RigidStops::push(const Mechanism& acting, std::size_t i,
   return 0;
 }
 
+bool RigidStops::is_flight(std::size_t i, double off, double pressed) const {
+  const double rounding = std::numeric_limits<double>::epsilon() * (1 + std::abs(stops_[i].limit));
+  return 2 * off / pressed >= shortest * span_ && off * off / (2 * pressed) >= rounding;
+}
+
 double RigidStops::value(std::size_t i, double t, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& u) {
   const Stop& stop = stops_[i];
@@ -157,7 +162,7 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
       if (holding.contains(i)) continue;
       const double off = -stop.side * u[stop.u], pressed = stop.side * start.udot[stop.u];
       if (!(pressed > 0)) continue;
-      if (2 * off / pressed >= shortest * span_) {
+      if (is_flight(i, off, pressed)) {
         pause = std::min(pause, off / pressed);
         continue;
       }
@@ -170,7 +175,7 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
     for (const std::size_t i : left) {
       const Stop& stop = stops_[i];
       const double off = -stop.side * u[stop.u], pressed = stop.side * start.udot[stop.u];
-      if (holding.contains(i) || !(pressed > 0) || 2 * off / pressed >= shortest * span_) continue;
+      if (holding.contains(i) || !(pressed > 0) || is_flight(i, off, pressed)) continue;
       again |= held_.insert(i).second;
       stuck.insert(i);
     }

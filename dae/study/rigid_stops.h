@@ -9,9 +9,10 @@
 //
 // Behind an impact with the rate v off the stop and the acceleration a towards it, the next impact
 // follows after 2v/a. Impacts of e < 1 come ever closer (Zeno), so that they must end somewhere:
-// where 2v/a is shorter than 10⁻⁸ of the run the impact is taken with e = 0, and the stop holds.
-// What is left out is a time of 2v/a e/(1 − e), and a way of v²/2a. Where a method
-// does not resolve a flight, so that its own motion is beyond the stop at once, the stop holds too.
+// where 2v/a is shorter than 10⁻⁸ of the run, or v²/2a is below the rounding of q, the impact is
+// taken with e = 0, and the stop holds. What is left out is a time of 2v/a e/(1 − e), and a way of
+// v²/2a. Where a method does not resolve a flight, so that its own motion is beyond the stop at
+// once, the stop holds too.
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/integrated_scene.h>
@@ -68,6 +69,9 @@ class RigidStops {
   };
   Start behind(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& before,
                const std::vector<std::size_t>& hit, RunResult& told, double& taken);
+  /// Whether rate `off` a stop against the acceleration `pressed` > 0 leaves it for longer than a
+  /// part of the run, and higher than rounding.
+  bool is_flight(std::size_t i, double off, double pressed) const;
   Acting& with(const std::set<std::size_t>& held);
   std::string loop_name(std::size_t i) const;
   /// ±λ of a held stop, of all multipliers of the acting mechanism.

@@ -413,6 +413,20 @@ TEST(RigidStops, ThatPushEachOtherOffComeToRest) {
   }
 }
 
+// A flight lower than the rounding of q is none, however short the run: 5e-8²/20 m is half of it.
+TEST(RigidStops, HoldWhereAFlightIsLowerThanRounding) {
+  const Mechanism mechanism(slide(1));
+  RigidStops stops(mechanism, 0.2);
+  RunResult told;
+  double taken = 0;
+  stops.begin(assemble(mechanism).start, told);
+  const VectorXd q = VectorXd::Zero(1);
+  stops.meet(0.1, q, VectorXd::Constant(1, -1e-6), {0}, told, taken);
+  EXPECT_FALSE(stops.any_held());
+  stops.meet(0.15, q, VectorXd::Constant(1, -5e-8), {0}, told, taken);
+  EXPECT_TRUE(stops.any_held());
+}
+
 TEST(RigidStops, HoldOnAtPushesThatAreShorterThanAFlight) {
   Scene scene = toggle(0.6);
   scene.held = {"A", "B"};
