@@ -266,14 +266,16 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  // The σ that a leak begins with depends on inertias in its own way.
+  // The σ that a leak begins with is λ/κ, and that of accelerations: differenced.
   std::optional<StartAdjoint> start_adjoint;
   TakenAtOnce at_once;
-  if (form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
+  const bool leaks = form.gauge().kind == Gauge::Kind::leak;
+  if ((result.adjoint || !leaks) && !mechanism.scene().lagrangian &&
       !mechanism.plan().quasi_velocities && !mechanism.has_nonholonomic()) {
     start_adjoint.emplace(mechanism, start);
     at_once.slopes = &start_adjoint->numbers();
-    at_once.starts = start_adjoint->follows_assembly();
+    at_once.slopes_of_start = !leaks;
+    at_once.starts = !leaks && start_adjoint->follows_assembly();
     at_once.makes_all = !result.adjoint || request.of.find("energy") != std::string::npos;
     for (const Column& marker : mechanism.marker_columns())
       at_once.makes_places |= request.of.find(marker.name) != std::string::npos;

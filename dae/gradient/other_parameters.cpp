@@ -129,7 +129,9 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
   for (std::size_t j = 0; j < variables.size(); ++j)
     all[j].h = sixth_order::part * variables[j].size;
   if (slopes) {
-    same.emplace(mechanism.scene(), slopes->of_places());
+    same.emplace(mechanism.scene(), slopes->of_drives()   ? Change::drives
+                                    : slopes->of_places() ? Change::places
+                                                          : Change::inertias_and_forces);
     if (!at_once.makes_all)
       OwnNumbers(scene, *slopes, *same, mechanism.scene()).take(variables, all);
   }
@@ -150,12 +152,14 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
       Change change = Change::inertias_and_forces;
       for (const Scene& made : scenes) change = std::max(change, same->of(made));
       if (change != Change::more) other.numbers = numbers_by(*slopes, other.h, scenes);
-      other.of_places = change == Change::places && other.numbers.size() > 0;
+      other.of_places = change >= Change::places && other.numbers.size() > 0;
+      if (other.of_places && change == Change::drives)
+        for (const Scene& made : scenes) other.laws.push_back(build_valid_tree(made).drives);
     }
     if (other.numbers.size() > 0) {
-      other.starts_at_once = !other.of_places || at_once.starts;
+      other.starts_at_once = at_once.slopes_of_start && (!other.of_places || at_once.starts);
       const bool makes =
-          at_once.makes_all || (other.of_places && (at_once.makes_places || !at_once.starts));
+          at_once.makes_all || !other.starts_at_once || (other.of_places && at_once.makes_places);
       if (!makes) continue;
     }
     if (scenes.empty()) read();

@@ -15,8 +15,8 @@ namespace momenta {
 struct TakenAtOnce {
   /// Null: nothing.
   const NumberSlopes* slopes = nullptr;
-  /// The start too, wherever it is assembled (start_adjoint.h).
-  bool starts = false;
+  /// The start too: of inertias and forces, and wherever it is assembled (start_adjoint.h).
+  bool slopes_of_start = true, starts = false;
   /// Something else asks for the mechanisms of those that change places, or of all.
   bool makes_places = false, makes_all = false;
 };

@@ -1,3 +1,4 @@
+#include <momenta/dae/gradient/drive_slopes.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 
 #include <algorithm>
@@ -68,6 +69,8 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
   if (at_once() == 0) return;
   placed_ = std::any_of(others.begin(), others.end(),
                         [](const OtherParameter& other) { return other.of_places; });
+  moves_drives_ = std::any_of(others.begin(), others.end(),
+                              [](const OtherParameter& other) { return !other.laws.empty(); });
   numbers_ = make_number_slopes(mechanism, placed_);
   slopes_.setZero(numbers_->size());
 }
@@ -75,6 +78,13 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
 Index StageAdjoint::at_once() const {
   return std::count_if(others_.begin(), others_.end(),
                        [](const OtherParameter& other) { return other.numbers.size() > 0; });
+}
+
+/// What numbers have so far by f and ḟ of drives, which are those at t.
+void StageAdjoint::take_drives(double t, VectorXd& by_parameters) {
+  if (!moves_drives_) return;
+  add_drive_slopes(*numbers_, others_, t, slopes_, by_parameters);
+  slopes_.segment(numbers_->drives(), numbers_->guess() - numbers_->drives()).setZero();
 }
 
 void StageAdjoint::finish(VectorXd& by_parameters) const {
@@ -157,11 +167,13 @@ bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& pr
     forces_.along(at.t, at.q, at.u, along_q_, still_, by_u_);
     product.head(nv_) += by_q_ + by_u_;
   }
-  if (numbers_)
+  if (numbers_) {
     numbers_->add(-1,
                   {at.t, at.q.data(), f.u.data(), f.sigma.data(), along_q_.data(), f.du.data(),
                    f.dsigma.data()},
                   slopes_);
+    take_drives(at.t, by_parameters);
+  }
   if (!any_rows_) return true;
   rows_.t = at.t;
   VectorXd weights(2 * nv_ + m_);
@@ -205,13 +217,19 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
         slopes_);
     if (placed_ && rows_.beta != 0)
       numbers_->add_loops(-rows_.beta, at.t, at.q.data(), dsigma, slopes_);
+    if (placed_ && rows_.leak != 0)  // −κ bᵀΦ_qᵀσ of ṗ
+      numbers_->add_loop_rates(
+          -rows_.leak, {at.t, at.q.data(), nullptr, at.sigma.data(), nullptr, b.data(), nullptr},
+          slopes_);
+    take_drives(at.t, by_parameters);
   }
   add_by_parameters(rows_, x, joined(-mu.head(nv_), -mu.tail(m_), b), by_parameters);
   return true;
 }
 
 /// What numbers have of a gauge: c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ).
-void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p) {
+void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p,
+                             VectorXd& by_parameters) {
   numbers_->add(c, along_mu, slopes_);
   if (!placed_) return;
   NumberSweep::Motion along_p = along_mu;
@@ -220,6 +238,7 @@ void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, cons
   numbers_->add_loop_rates(-c, along_p, slopes_);
   if (rows_.beta != 0)
     numbers_->add_loops(c * rows_.beta, along_mu.t, along_mu.q, along_mu.dsigma, slopes_);
+  take_drives(along_mu.t, by_parameters);
 }
 
 /// p' = c M u − (c − 1) p by the sweeps.
@@ -253,7 +272,7 @@ bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambd
     add_gauge(
         c,
         {at.t, at.q.data(), f.u.data(), f.sigma.data(), nullptr, along_p_.data(), f.dsigma.data()},
-        of_p.data());
+        of_p.data(), by_parameters);
     for (double& x : f.dsigma) x = -x;
   }
   if (any_rows_) {
@@ -294,7 +313,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   if (numbers_)
     add_gauge(
         c, {at.t, at.q.data(), at.u.data(), at.sigma.data(), nullptr, mu.data(), mu.data() + nv_},
-        of_p.data());
+        of_p.data(), by_parameters);
   add_by_parameters(MomentumAndLoopRows{rows_}, x, joined(c * mu, -c * of_p, VectorXd(0)),
                     by_parameters);
   return true;
@@ -329,6 +348,7 @@ bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
     if (placed_) numbers_->add_loops(-1, t, q.data(), dsigma, slopes_);
     if (driven_)
       numbers_->add(1, {t, q.data(), still_.data(), nullptr, nullptr, du, dsigma}, slopes_);
+    take_drives(t, by_parameters);
   }
   CorrectionRows rows{rows_};
   add_by_parameters(rows, x, -mu, by_parameters);
