@@ -251,16 +251,19 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  // The σ that a leak begins with depends on inertias in its own way; on accelerations second
-  // derivatives by all numbers have no part in time.
+  // The σ that a leak begins with is λ/κ, and that of accelerations: differenced. On accelerations
+  // second derivatives by all numbers have no part in time.
   std::optional<StartAdjoint> start_adjoint;
   TakenAtOnce at_once;
-  if (form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
+  const bool leaks = form.gauge().kind == Gauge::Kind::leak;
+  if ((result.adjoint || !leaks) && !mechanism.scene().lagrangian &&
       !mechanism.plan().quasi_velocities && !mechanism.has_nonholonomic() &&
       (form.momentum_like() || !result.adjoint || !mechanism.plan().drives)) {
     start_adjoint.emplace(mechanism, start);
     at_once.slopes = &start_adjoint->numbers();
-    at_once.starts = start_adjoint->follows_assembly();
+    at_once.slopes_of_start = !leaks;
+    at_once.starts = !leaks && start_adjoint->follows_assembly();
+    at_once.plain_forces = !(result.adjoint && form.momentum_like());
     const auto asks = [&](const std::string& name) {
       return request.of.find(name) != std::string::npos ||
              std::any_of(request.outputs.begin(), request.outputs.end(),

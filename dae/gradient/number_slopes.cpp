@@ -64,33 +64,45 @@ class NumberSlopesOf final : public NumberSlopes {
       if (is_of("loop", loops[i].name,
                 {"origin", "rotation", "axis", "axis2", "direction", "length", "offset"}))
         return {{of_loop(i)}, true};
-    Index spring = 0, sum = 0;
+    Index spring = 0, sum = 0, wrench = 0, bushing = 0;
     for (const ForceSpec& f : mechanism_.scene().forces) {
-      if (!is_plain_spring(f)) {
-        if (f.kind == "spring-damper" || f.kind == "coordinate-spring") return {};
-        continue;
+      if (!f.law.empty()) continue;
+      const bool of_points = f.kind == "spring-damper", of_sum = f.kind == "coordinate-spring";
+      if (of_points || of_sum) {
+        const bool acts = f.stiffness != 0 || f.damping != 0 || has_stops(f) ||
+                          (f.limits && of_points),
+                   moved = is_of("force", f.name, {"origin"});
+        if (moved || is_of("force", f.name, {"stiffness", "rest", "damping"})) {
+          if (!acts) return {};
+          return {{of_points ? of_spring(spring)
+                             : Range{places_.sums + Places::of_sum * sum, Places::of_sum}},
+                  moved};
+        }
+        if (acts) ++(of_points ? spring : sum);
+      } else if (f.kind == "wrench") {
+        if (is_of("force", f.name, {"point", "force", "torque"}))
+          return {{{places_.wrenches + Places::of_wrench * wrench, Places::of_wrench}}};
+        ++wrench;
+      } else if (f.kind == "bushing") {
+        if (is_of("force", f.name,
+                  {"stiffness", "damping", "rotational_stiffness", "rotational_damping"}))
+          return {{{places_.bushings + Places::of_bushing * bushing, Places::of_bushing}}};
+        ++bushing;
       }
-      const bool acts = f.stiffness != 0 || f.damping != 0 || f.limits,
-                 moved = is_of("force", f.name, {"origin"});
-      if (moved || is_of("force", f.name, {"stiffness", "rest", "damping"})) {
-        if (!acts) return {};
-        return {{f.kind == "spring-damper"
-                     ? of_spring(spring)
-                     : Range{places_.sums + Places::of_sum * sum, Places::of_sum}},
-                moved};
-      }
-      if (acts) ++(f.kind == "spring-damper" ? spring : sum);
     }
     return {};
   }
 
   bool of_places() const override {
-    return model_.bushings.empty() && model_.wrenches.empty() && model_.signals.empty() &&
-           model_.formula_forces.empty() && !model_.has_corners &&
-           std::all_of(model_.springs.begin(), model_.springs.end(),
-                       [](const auto& spring) { return spring.damping == 0; }) &&
+    return model_.bushings.empty() && model_.signals.empty() && model_.formula_forces.empty() &&
            loops_.motions.empty() && loops_.pairs.empty() && loops_.equations.empty() &&
            loops_.wheels.empty() && loops_.curves == 0;
+  }
+
+  bool of_plain_places() const override {
+    return of_places() && model_.wrenches.empty() && !model_.has_corners &&
+           std::all_of(model_.springs.begin(), model_.springs.end(),
+                       [](const auto& spring) { return spring.damping == 0; });
   }
 
   std::vector<Index> without_potential() const override {
@@ -108,6 +120,18 @@ class NumberSlopesOf final : public NumberSlopes {
     return all;
   }
 
+  bool of_drives() const override {
+    const auto is_driven = [&](const auto& term) {
+      return model_.bodies[static_cast<std::size_t>(term.body)].drive >= 0;
+    };
+    return of_places() &&
+           std::none_of(model_.coordinate_springs.begin(), model_.coordinate_springs.end(),
+                        [&](const auto& spring) {
+                          return std::any_of(spring.terms.begin(), spring.terms.end(), is_driven);
+                        });
+  }
+  Index drives() const override { return places_.drives; }
+
   void add(double factor, const NumberSweep::Motion& at) override { sweep_->add(factor, at); }
   void add_loop_rates(double factor, const NumberSweep::Motion& at) override {
     sweep_->add_loop_rates(factor, at);
@@ -124,7 +148,9 @@ class NumberSlopesOf final : public NumberSlopes {
     if (model.bodies.size() != model_.bodies.size() ||
         model.springs.size() != model_.springs.size() ||
         model.coordinate_springs.size() != model_.coordinate_springs.size() ||
-        loops.loops.size() != loops_.loops.size())
+        model.wrenches.size() != model_.wrenches.size() ||
+        model.bushings.size() != model_.bushings.size() ||
+        model.drives.size() != model_.drives.size() || loops.loops.size() != loops_.loops.size())
       return {};
     VectorXd all(size());
     Index at = 0;
@@ -180,6 +206,19 @@ class NumberSlopesOf final : public NumberSlopes {
     }
     for (const auto& spring : model.coordinate_springs)
       for (const double number : {spring.stiffness, spring.rest, spring.damping}) put(number);
+    for (const auto& wrench : model.wrenches) {
+      put_vector(wrench.at);
+      put_vector(wrench.force);
+      if constexpr (in_space)
+        put_vector(wrench.torque);
+      else
+        put(wrench.normal_torque);
+    }
+    for (const auto& bushing : model.bushings)
+      for (const double number : {bushing.stiffness, bushing.damping, bushing.rotational_stiffness,
+                                  bushing.rotational_damping})
+        put(number);
+    for (std::size_t i = 0; i < 2 * model.drives.size(); ++i) put(0);
     if (tree.q0.size() != mechanism_.nv() || tree.u0.size() != mechanism_.nv()) return {};
     all.segment(at, tree.q0.size()) = tree.q0;
     all.segment(at + tree.q0.size(), tree.u0.size()) = tree.u0;
@@ -229,6 +268,10 @@ class NumberSlopesOf final : public NumberSlopes {
     for (std::size_t i = 0; i < model_.springs.size(); ++i)
       if (moves[at(model_.springs[i].parent)] || moves[at(model_.springs[i].child)])
         all.ranges.push_back(of_spring(static_cast<Index>(i)));
+    for (std::size_t i = 0; i < model_.wrenches.size(); ++i)
+      if (moves[at(model_.wrenches[i].body)])
+        all.ranges.push_back(
+            {places_.wrenches + Places::of_wrench * static_cast<Index>(i), Places::of_wrench});
     return all;
   }
   static bool any_slides(const Tree& tree) {

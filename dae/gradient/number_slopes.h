@@ -54,10 +54,16 @@ class NumberSlopes {
   /// "joint.A.origin.parent.0" all that is counted in the frames of the two bodies it joins; of a
   /// loop or spring its own.
   virtual Share of(const std::string& place) const = 0;
-  /// Whether places and lengths are among what the derivatives are right of: not where forces at
-  /// points of bodies have no potential or are no plain springs, or loops are driven, of curves or
-  /// formulas.
+  /// Whether places and lengths are among what the derivatives are right of: not where there are
+  /// bushings or forces by formulas, or loops are driven, of curves or formulas.
   virtual bool of_places() const = 0;
+  /// And where no such force is a damper between points, a wrench, or has a dead band or stops.
+  virtual bool of_plain_places() const = 0;
+  /// And numbers of the drives of joints: not where springs along coordinates take a driven one.
+  virtual bool of_drives() const = 0;
+  /// Where f and ḟ of the drives stand, in the order of the tree's: functions of time, so that they
+  /// are to be taken at each.
+  virtual Eigen::Index drives() const = 0;
   /// Where the numbers of dampers and friction stand.
   virtual std::vector<Eigen::Index> without_potential() const = 0;
   /// Adds factor D ∂L*/∂number. O(bodies + m)

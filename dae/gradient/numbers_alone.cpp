@@ -20,7 +20,7 @@ bool has_word(const std::string& formula, const std::string& name) {
 }
 
 /// What of the scene is a formula while it runs: there a parameter is no number of the tables.
-std::vector<std::string> formulas_of(const Scene& scene) {
+std::vector<std::string> formulas_of(const Scene& scene, bool with_drives) {
   std::vector<std::string> all;
   for (const ForceSpec& force : scene.forces) {
     all.push_back(force.law);
@@ -28,7 +28,8 @@ std::vector<std::string> formulas_of(const Scene& scene) {
     all.insert(all.end(), force.torque_law.begin(), force.torque_law.end());
   }
   for (const LoopSpec& loop : scene.loops) all.push_back(loop.equation);
-  for (const DriveSpec& drive : scene.drives) all.push_back(drive.law);
+  if (with_drives)
+    for (const DriveSpec& drive : scene.drives) all.push_back(drive.law);
   return all;
 }
 
@@ -38,8 +39,19 @@ void take(Spec& to, const Spec& from, Member Spec::*... members) {
   ((to.*members = from.*members), ...);
 }
 
+/// Of a force along one length, linear in it or not.
+bool is_spring(const ForceSpec& force, Forces known) {
+  return (force.kind == "spring-damper" || force.kind == "coordinate-spring") &&
+         force.law.empty() && (known == Forces::all || (force.dead_band == 0 && !has_stops(force)));
+}
+bool has_no_formulas(const ForceSpec& wrench) {
+  const auto empty = [](const std::string& law) { return law.empty(); };
+  return std::all_of(wrench.force_law.begin(), wrench.force_law.end(), empty) &&
+         std::all_of(wrench.torque_law.begin(), wrench.torque_law.end(), empty);
+}
+
 /// What `other` differs in that the slopes by numbers know without the places of joints and loops.
-void take_inertias_and_forces(Scene& other, const Scene& own) {
+void take_inertias_and_forces(Scene& other, const Scene& own, Forces known) {
   other.gravity = own.gravity;
   other.parameters = own.parameters;
   for (std::size_t i = 0; i < own.bodies.size(); ++i)
@@ -51,14 +63,20 @@ void take_inertias_and_forces(Scene& other, const Scene& own) {
   for (std::size_t i = 0; i < own.forces.size(); ++i) {
     const ForceSpec& force = own.forces[i];
     if (force.kind == "torque") other.forces[i].value = force.value;
-    if (is_plain_spring(force))
+    if (is_spring(force, known))
       take(other.forces[i], force, &ForceSpec::stiffness, &ForceSpec::damping, &ForceSpec::rest);
+    if (known == Forces::plain || !force.law.empty()) continue;
+    if (force.kind == "bushing")
+      take(other.forces[i], force, &ForceSpec::stiffness, &ForceSpec::damping,
+           &ForceSpec::rotational_stiffness, &ForceSpec::rotational_damping);
+    if (force.kind == "wrench" && has_no_formulas(force))
+      take(other.forces[i], force, &ForceSpec::point, &ForceSpec::force, &ForceSpec::torque);
   }
 }
 
 /// And with them: places of joints, loops, springs and markers, guesses of the start; figures and
 /// defaults of a run change no motion.
-void take_places(Scene& other, const Scene& own) {
+void take_places(Scene& other, const Scene& own, Forces known) {
   for (std::size_t i = 0; i < own.joints.size(); ++i)
     take(other.joints[i], own.joints[i], &JointSpec::origin_parent, &JointSpec::origin_child,
          &JointSpec::rotation, &JointSpec::axis, &JointSpec::axis2, &JointSpec::direction,
@@ -68,25 +86,32 @@ void take_places(Scene& other, const Scene& own) {
          &LoopSpec::rotation, &LoopSpec::axis, &LoopSpec::axis2, &LoopSpec::direction,
          &LoopSpec::length, &LoopSpec::offset);
   for (std::size_t i = 0; i < own.forces.size(); ++i)
-    if (is_plain_spring(own.forces[i]))
+    if (is_spring(own.forces[i], known))
       take(other.forces[i], own.forces[i], &ForceSpec::origin_parent, &ForceSpec::origin_child);
   other.markers = own.markers;
   other.visuals = own.visuals;
   other.run = own.run;
 }
 
-}  // namespace
-
-bool is_plain_spring(const ForceSpec& force) {
-  return (force.kind == "spring-damper" || force.kind == "coordinate-spring") &&
-         force.law.empty() && force.dead_band == 0 && !has_stops(force);
+/// And the laws of drives, which read no parameter while they run; so do the functions by points
+/// that they call.
+void take_drives(Scene& other, const Scene& own) {
+  for (std::size_t i = 0; i < own.drives.size(); ++i)
+    take(other.drives[i], own.drives[i], &DriveSpec::coefficients, &DriveSpec::offset,
+         &DriveSpec::amplitude, &DriveSpec::frequency, &DriveSpec::phase, &DriveSpec::from,
+         &DriveSpec::to, &DriveSpec::start, &DriveSpec::duration, &DriveSpec::times,
+         &DriveSpec::values, &DriveSpec::law, &DriveSpec::functions);
+  other.functions = own.functions;
 }
 
-NumbersAlone::NumbersAlone(const Scene& scene, bool of_places)
+}  // namespace
+
+NumbersAlone::NumbersAlone(const Scene& scene, Change known, Forces forces)
     : scene_(scene),
-      of_places_(of_places),
+      known_(known),
+      forces_(forces),
       text_(scene_text(scene)),
-      formulas_(formulas_of(scene)) {}
+      formulas_(formulas_of(scene, known < Change::drives)) {}
 
 Change NumbersAlone::of(Scene other) const {
   if (other.bodies.size() != scene_.bodies.size() || other.joints.size() != scene_.joints.size() ||
@@ -99,11 +124,14 @@ Change NumbersAlone::of(Scene other) const {
           return has_word(formula, scene_.parameters[i].name);
         }))
       return Change::more;
-  take_inertias_and_forces(other, scene_);
+  take_inertias_and_forces(other, scene_, forces_);
   if (scene_text(other) == text_) return Change::inertias_and_forces;
-  if (!of_places_) return Change::more;
-  take_places(other, scene_);
-  return scene_text(other) == text_ ? Change::places : Change::more;
+  if (known_ < Change::places) return Change::more;
+  take_places(other, scene_, forces_);
+  if (scene_text(other) == text_) return Change::places;
+  if (known_ < Change::drives || other.drives.size() != scene_.drives.size()) return Change::more;
+  take_drives(other, scene_);
+  return scene_text(other) == text_ ? Change::drives : Change::more;
 }
 
 }  // namespace momenta

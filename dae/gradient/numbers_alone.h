@@ -11,27 +11,31 @@ namespace momenta {
 
 /// Kinds of differences.
 enum class Change {
-  inertias_and_forces,  ///< of bodies, gravity, springs and dampers: the assembly knows none of
-                        ///< them
+  inertias_and_forces,  ///< of bodies, gravity, springs, dampers, wrenches, bushings: the assembly
+                        ///< knows none of them
   places,               ///< of joints, loops and springs, with or without these
+  drives,               ///< of joints, their laws, with or without these
   more                  ///< anything else
 };
 
+/// Which forces: springs and dampers linear in one length, or dead bands, stops, wrenches and
+/// bushings too.
+enum class Forces { plain, all };
+
 class NumbersAlone {
  public:
-  /// `of_places` false: a difference in places is more. The scene must outlive it.
-  NumbersAlone(const Scene& scene, bool of_places);
+  /// `known`: a difference beyond is more, and so is one in other forces. The scene must outlive
+  /// it.
+  NumbersAlone(const Scene& scene, Change known, Forces forces);
   /// O(text of the scene)
   Change of(Scene other) const;
 
  private:
   const Scene& scene_;
-  bool of_places_;
+  Change known_;
+  Forces forces_;
   std::string text_;
   std::vector<std::string> formulas_;
 };
-
-/// Whether a force is a spring and damper along one length and linear in it.
-bool is_plain_spring(const ForceSpec& force);
 
 }  // namespace momenta

@@ -125,13 +125,21 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
                                              const TakenAtOnce& at_once) {
   std::vector<OtherParameter> all(variables.size());
   const NumberSlopes* const slopes = at_once.slopes;
-  std::optional<NumbersAlone> same;
+  std::optional<NumbersAlone> same, plain;
   for (std::size_t j = 0; j < variables.size(); ++j)
     all[j].h = sixth_order::part * variables[j].size;
   if (slopes) {
-    same.emplace(mechanism.scene(), slopes->of_places());
+    same.emplace(mechanism.scene(),
+                 slopes->of_drives()   ? Change::drives
+                 : slopes->of_places() ? Change::places
+                                       : Change::inertias_and_forces,
+                 Forces::all);
+    if (at_once.plain_forces)
+      plain.emplace(mechanism.scene(),
+                    slopes->of_plain_places() ? Change::places : Change::inertias_and_forces,
+                    Forces::plain);
     if (!at_once.makes_all)
-      OwnNumbers(scene, *slopes, *same, mechanism.scene()).take(variables, all);
+      OwnNumbers(scene, *slopes, plain ? *plain : *same, mechanism.scene()).take(variables, all);
   }
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
@@ -147,15 +155,29 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
     };
     if (slopes && other.numbers.size() == 0) {
       read();
-      Change change = Change::inertias_and_forces;
-      for (const Scene& made : scenes) change = std::max(change, same->of(made));
-      if (change != Change::more) other.numbers = numbers_by(*slopes, other.h, scenes);
-      other.of_places = change == Change::places && other.numbers.size() > 0;
+      const auto change = [&](const NumbersAlone& alone) {
+        Change largest = Change::inertias_and_forces;
+        for (const Scene& made : scenes) largest = std::max(largest, alone.of(made));
+        return largest;
+      };
+      const Change whole = change(*same);
+      VectorXd numbers;
+      if (whole != Change::more) numbers = numbers_by(*slopes, other.h, scenes);
+      const bool known = numbers.size() > 0, of_places = known && whole >= Change::places;
+      if (of_places && whole == Change::drives)
+        for (const Scene& made : scenes) other.laws.push_back(build_valid_tree(made).drives);
+      if (known && plain && change(*plain) == Change::more) {
+        other.at_start = std::move(numbers);
+        other.starts_at_once = at_once.slopes_of_start && (!of_places || at_once.starts);
+      } else {
+        other.numbers = std::move(numbers);
+        other.of_places = of_places;
+      }
     }
     if (other.numbers.size() > 0) {
-      other.starts_at_once = !other.of_places || at_once.starts;
+      other.starts_at_once = at_once.slopes_of_start && (!other.of_places || at_once.starts);
       const bool makes =
-          at_once.makes_all || (other.of_places && (at_once.makes_places || !at_once.starts));
+          at_once.makes_all || !other.starts_at_once || (other.of_places && at_once.makes_places);
       if (!makes) continue;
     }
     if (scenes.empty()) read();

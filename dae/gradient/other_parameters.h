@@ -15,10 +15,12 @@ namespace momenta {
 struct TakenAtOnce {
   /// Null: nothing.
   const NumberSlopes* slopes = nullptr;
-  /// The start too, wherever it is assembled (start_adjoint.h).
-  bool starts = false;
+  /// The start too: of inertias and forces, and wherever it is assembled (start_adjoint.h).
+  bool slopes_of_start = true, starts = false;
   /// Something else asks for the mechanisms of those that change places, or of all.
   bool makes_places = false, makes_all = false;
+  /// Numbers of springs and dampers alone, and no laws of drives: what follows knows no other.
+  bool plain_forces = false;
 };
 
 /// Mechanisms at other values of each variable; none of a start value, and none of what is taken at

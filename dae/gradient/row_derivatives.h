@@ -7,6 +7,7 @@
 // evaluations of the mechanism with other θ_j at the same x.
 
 #include <momenta/core/scalar/sixth_order.h>
+#include <momenta/core/scene/drive.h>
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
@@ -22,7 +23,11 @@ namespace momenta {
 struct OtherParameter {
   double h = 0;
   Eigen::VectorXd numbers;
-  bool of_places = false;       ///< places of joints, loops or springs are among these
+  bool of_places = false;  ///< places of joints, loops or springs are among these, or `laws`
+  /// The laws of the tree's drives at θ_j + k h, in the order of sixth_order::points, where θ_j
+  /// changes some; else empty. Numbers of drives are left out of `numbers`.
+  std::vector<std::vector<MotionLaw>> laws;
+  Eigen::VectorXd at_start;     ///< the same where the start alone is made of them, rows are not
   bool starts_at_once = false;  ///< what the start has of θ_j is that of start_adjoint.h
   std::vector<std::unique_ptr<Mechanism>> mechanisms;
   std::vector<std::unique_ptr<Evaluation<double>>> evaluations;

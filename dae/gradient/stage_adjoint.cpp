@@ -1,3 +1,4 @@
+#include <momenta/dae/gradient/drive_slopes.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 
 #include <algorithm>
@@ -70,6 +71,8 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
   if (at_once() == 0) return;
   placed_ = std::any_of(others.begin(), others.end(),
                         [](const OtherParameter& other) { return other.of_places; });
+  moves_drives_ = std::any_of(others.begin(), others.end(),
+                              [](const OtherParameter& other) { return !other.laws.empty(); });
   numbers_ = make_number_slopes(mechanism, placed_);
   slopes_.setZero(numbers_->size());
 }
@@ -77,6 +80,14 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
 Index StageAdjoint::at_once() const {
   return std::count_if(others_.begin(), others_.end(),
                        [](const OtherParameter& other) { return other.numbers.size() > 0; });
+}
+
+/// What numbers have so far by f and ḟ of drives, which are those at t.
+void StageAdjoint::take_drives(double t, VectorXd& by_parameters) {
+  if (!moves_drives_) return;
+  numbers_->finish(slopes_);
+  add_drive_slopes(*numbers_, others_, t, slopes_, by_parameters);
+  slopes_.segment(numbers_->drives(), numbers_->guess() - numbers_->drives()).setZero();
 }
 
 void StageAdjoint::finish(VectorXd& by_parameters) {
@@ -172,13 +183,18 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
     numbers_->add(
         -1, {at.t, at.q.data(), at.u.data(), at.sigma.data(), along_q_.data(), mu.data(), dsigma});
     if (placed_ && rows_.beta != 0) numbers_->add_loops(-rows_.beta, at.t, at.q.data(), dsigma);
+    if (placed_ && rows_.leak != 0)  // −κ bᵀΦ_qᵀσ of ṗ
+      numbers_->add_loop_rates(
+          -rows_.leak, {at.t, at.q.data(), nullptr, at.sigma.data(), nullptr, b.data(), nullptr});
+    take_drives(at.t, by_parameters);
   }
   add_by_parameters(rows_, x, joined(-mu.head(nv_), -mu.tail(m_), b), by_parameters);
   return true;
 }
 
 /// What numbers have of a gauge: c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ).
-void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p) {
+void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p,
+                             VectorXd& by_parameters) {
   numbers_->add(c, along_mu);
   if (!placed_) return;
   NumberSweep::Motion along_p = along_mu;
@@ -186,6 +202,7 @@ void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, cons
   along_p.dsigma = nullptr;
   numbers_->add_loop_rates(-c, along_p);
   if (rows_.beta != 0) numbers_->add_loops(c * rows_.beta, along_mu.t, along_mu.q, along_mu.dsigma);
+  take_drives(along_mu.t, by_parameters);
 }
 
 bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_parameters) {
@@ -214,7 +231,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   if (numbers_)
     add_gauge(
         c, {at.t, at.q.data(), at.u.data(), at.sigma.data(), nullptr, mu.data(), mu.data() + nv_},
-        of_p.data());
+        of_p.data(), by_parameters);
   add_by_parameters(MomentumAndLoopRows{rows_}, x, joined(c * mu, -c * of_p, VectorXd(0)),
                     by_parameters);
   return true;
@@ -222,7 +239,10 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
 
 bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
                               VectorXd& by_parameters) {
-  return corrections_.positions(t, q, false, {numbers_.get(), placed_}, lambda, by_parameters);
+  if (!corrections_.positions(t, q, false, {numbers_.get(), placed_}, lambda, by_parameters))
+    return false;
+  take_drives(t, by_parameters);
+  return true;
 }
 
 }  // namespace momenta

@@ -109,7 +109,9 @@ class StageAdjoint final : public FormAdjoint {
   template <class Rows>
   void add_by_parameters(const Rows& rows, const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
                          Eigen::VectorXd& sum);
-  void add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p);
+  void add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p,
+                 Eigen::VectorXd& by_parameters);
+  void take_drives(double t, Eigen::VectorXd& by_parameters);
   bool factor(double t, const Eigen::VectorXd& q);
   Eigen::VectorXd loop_rates(const Eigen::VectorXd& u);
 
@@ -126,6 +128,7 @@ class StageAdjoint final : public FormAdjoint {
   std::unique_ptr<KineticRates> kinetic_;  ///< where there are sweeps
   Eigen::VectorXd slopes_;                 ///< by these numbers, so far
   bool placed_ = false;                    ///< some θ changes places
+  bool moves_drives_ = false;              ///< some θ changes laws of drives
   Gauge gauge_;
   MomentumAndRateRows rows_;
   Eigen::Index nv_, m_;

@@ -1,3 +1,4 @@
+#include <momenta/dae/gradient/drive_slopes.h>
 #include <momenta/dae/gradient/start_adjoint.h>
 
 #include <cmath>
@@ -184,7 +185,9 @@ MatrixXd StartAdjoint::rows(bool of_momenta) {
 
 VectorXd StartAdjoint::by(const RunVariable& variable, const OtherParameter& other,
                           const MatrixXd& slopes) const {
-  if (variable.kind == RunVariable::Kind::parameter) return slopes * other.numbers;
+  if (variable.kind == RunVariable::Kind::parameter)
+    return slopes * (other.numbers.size() > 0 ? other.numbers : other.at_start) +
+           by_laws(*numbers_, other, start_.t, slopes);
   const bool is_rate = variable.kind == RunVariable::Kind::rate;
   return slopes.col(numbers_->guess() + variable.place + (is_rate ? nv_ : 0));
 }

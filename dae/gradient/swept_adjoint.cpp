@@ -36,9 +36,11 @@ bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& pr
       forces_.along(at.t, at.q, at.u, along_q_, still_, by_u_);
     product.head(nv_) += by_q_ + by_u_;
   }
-  if (numbers_)
+  if (numbers_) {
     numbers_->add(-1, {at.t, at.q.data(), f.u.data(), f.sigma.data(), along_q_.data(), f.du.data(),
                        f.dsigma.data()});
+    take_drives(at.t, by_parameters);
+  }
   if (!any_rows_) return true;
   VectorXd weights(2 * nv_ + m_);
   weights << -du, -Map<const VectorXd>(f.dsigma.data(), m_), b;
@@ -78,7 +80,7 @@ bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambd
     add_gauge(
         c,
         {at.t, at.q.data(), f.u.data(), f.sigma.data(), nullptr, along_p_.data(), f.dsigma.data()},
-        along_q_.data());
+        along_q_.data(), by_parameters);
     for (double& x : f.dsigma) x = -x;
   }
   if (any_rows_) {

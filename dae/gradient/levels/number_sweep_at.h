@@ -12,206 +12,14 @@
 // Nothing here waits for anything else: motions are collected until each lane of a register has
 // one, and swept together.
 
-#include <momenta/core/kernel/signals.h>
-#include <momenta/core/kernel/sweeps.h>
+#include <momenta/dae/gradient/levels/force_numbers.h>
+#include <momenta/dae/gradient/levels/loop_numbers.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
 
 #include <optional>
 #include <vector>
 
 namespace momenta {
-
-/// States and directions in lanes as the sweeps of bodies take them.
-template <class Space, int Level, int Width>
-struct PlacedAlong {
-  using Lanes = Pack<Width, Level>;
-  using S = Directions<Width, Level>;
-  explicit PlacedAlong(const Model<Space>& model)
-      : w(model), q(static_cast<std::size_t>(model.nv)), u(q.size()) {}
-  /// x + dx ε
-  static S along(const Lanes& x, const Lanes& dx) {
-    S s;
-    s.a = x;
-    s.b[0] = dx;
-    return s;
-  }
-  /// Poses and velocities at (t, q, u).
-  void place(const Lanes& t, bool with_poses) {
-    poses_outward(w, along(t, Lanes(0.0)), q.data(), with_poses);
-    velocities_outward(w, u.data());
-  }
-  Workspace<Space, S> w;
-  std::vector<S> q, u;
-};
-
-/// A vector in ground axes in those of body k.
-template <class Space, class S>
-auto in_body_axes(const Workspace<Space, S>& w, int k,
-                  const typename Space::template Vector<S>& v) {
-  if (k < 0) return v;
-  if constexpr (Space::dimension == 3) {
-    const auto& pose = w.body[static_cast<std::size_t>(k)].pose;
-    return typename Space::template Vector<S>{
-        {pose.c * v[0] + pose.s * v[1], pose.c * v[1] - pose.s * v[0]}};
-  } else {
-    return from_ground(w, k, v);
-  }
-}
-
-/// The impulses σ of loops that are not driven, of points, axes and distances, as loop_rows.h has
-/// them, and what σᵀΦ̇ and σᵀΦ have by the numbers of these loops.
-template <class Space, class S>
-class LoopNumbers {
-  using Vector = typename Space::template Vector<S>;
-  using Angular = decltype(cross(Vector{}, Vector{}));
-  static constexpr int axes = Space::dimension == 3 ? 2 : 3;
-
- public:
-  LoopNumbers(const LoopModel<Space>& model, Workspace<Space, S>& w)
-      : model_(model), w_(w), at_(model.loops.size()) {}
-
-  /// Points and axes, and what the rows of each loop sum up to; needs poses and velocities.
-  void place(const S* sigma) {
-    for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
-      At& s = at_[i];
-      s.force = s.force_rate = {};
-      s.couple = s.couple_rate = {};
-      if (l.is_coupler()) continue;
-      s.x_a = point_position(w_, l.a, l.at_a);
-      s.x_b = point_position(w_, l.b, l.at_b);
-      s.u_a = point_velocity(w_, l.a, s.x_a);
-      s.u_b = point_velocity(w_, l.b, s.x_b);
-      const Vector D = s.x_a - s.x_b;
-      int row = l.row;
-      if (l.is_distance()) {
-        const S scaled = l.per_length * sigma[row];
-        s.force = scaled * D;
-        s.force_rate = scaled * (s.u_a - s.u_b);
-        continue;
-      }
-      s.w_a = angular_velocity(w_, l.a);
-      s.w_b = angular_velocity(w_, l.axes_of_b());
-      for (std::size_t j = 0; j < static_cast<std::size_t>(axes); ++j) {
-        if (l.n_axes > 0) s.a[j] = to_ground(w_, l.a, l.axis_a[j]);
-        s.b[j] = to_ground(w_, l.axes_of_b(), l.axis_b[j]);
-      }
-      for (int j = 0; j < l.n_points; ++j, ++row) {
-        const Vector& b = s.b[place_of(l.points, j)];
-        s.force += sigma[row] * b;
-        s.force_rate += sigma[row] * cross(s.w_b, b);
-      }
-      for (int j = 0; j < l.n_axes; ++j, ++row) {
-        const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
-        const Vector &a = s.a[static_cast<std::size_t>(x)], &b = s.b[static_cast<std::size_t>(y)];
-        s.couple += sigma[row] * cross(a, b);
-        s.couple_rate += sigma[row] * (cross(cross(s.w_a, a), b) + cross(a, cross(s.w_b, b)));
-      }
-    }
-  }
-
-  /// Adds impulses to body[k].P and their inertial rates to body[k].T.
-  void hand_to_bodies() {
-    for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
-      if (l.is_coupler()) continue;
-      const At& s = at_[i];
-      hand(l.a, s.x_a, s.u_a, s.force, s.force_rate, s.couple, s.couple_rate);
-      const bool at_b = l.is_tie;
-      hand(l.b, at_b ? s.x_b : s.x_a, at_b ? s.u_b : s.u_a, -s.force, -s.force_rate,
-           Angular(-s.couple), Angular(-s.couple_rate));
-    }
-  }
-
-  /// put(∂(σᵀΦ̇)/∂number), or of σᵀΦ, of the numbers of all loops. With f = Σ σ b that of x_A is
-  /// ḟ − ω_A × f, and f.
-  template <class Put>
-  void each(const S* sigma, bool of_rates, Put&& put) const {
-    for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
-      const At& s = at_[i];
-      std::array<Vector, 3> by_a{}, by_b{};
-      S per_length(0.0), given(0.0), across(0.0), gamma(0.0);
-      const Vector apart = s.u_a - s.u_b, D = s.x_a - s.x_b;
-      int row = l.row;
-      if (l.is_coupler()) {
-        given = -sigma[row];
-      } else if (l.is_distance()) {
-        per_length =
-            sigma[row] *
-            (of_rates ? dot(D, apart) : S(0.5 * (dot(D, D) + S(l.across2 - l.given * l.given))));
-        given = (-l.per_length * l.given) * sigma[row];
-        across = (0.5 * l.per_length) * sigma[row];
-      } else {
-        for (int j = 0; j < l.n_points && !l.is_tie; ++j)
-          by_b[place_of(l.points, j)] +=
-              sigma[row + j] * (of_rates ? Vector(apart - cross(s.w_b, D)) : D);
-        row += l.n_points;
-        for (int j = 0; j < l.n_axes; ++j, ++row) {
-          const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
-          const auto at_x = static_cast<std::size_t>(x), at_y = static_cast<std::size_t>(y);
-          const Angular turning = s.w_a - s.w_b;
-          by_a[at_x] += sigma[row] * (of_rates ? Vector(-cross(turning, s.b[at_y])) : s.b[at_y]);
-          by_b[at_y] += sigma[row] * (of_rates ? Vector(cross(turning, s.a[at_x])) : s.a[at_x]);
-          gamma -= sigma[row];
-        }
-      }
-      const auto put_in = [&](int body, const Vector& v) {
-        const Vector in = in_body_axes(w_, body, v);
-        for (const S& x : in.x) put(x);
-      };
-      const auto end = [&](int body) {
-        return of_rates ? Vector(s.force_rate - cross(angular_velocity(w_, body), s.force))
-                        : s.force;
-      };
-      if (l.is_coupler()) {
-        put.skip(2 * axes * (1 + axes));
-      } else {
-        put_in(l.a, end(l.a));
-        put_in(l.b, -end(l.b));
-        for (std::size_t j = 0; j < static_cast<std::size_t>(axes); ++j) {
-          if (l.n_axes > 0)
-            put_in(l.a, by_a[j]);
-          else
-            put.skip(axes);
-          if (l.n_axes > 0 || !l.is_tie)  // axes of the ground stay
-            put_in(l.axes_of_b(), by_b[j]);
-          else
-            put.skip(axes);
-        }
-      }
-      put(per_length);
-      if (of_rates) {
-        put.skip(3);
-        continue;
-      }
-      for (const S* x : {&given, &across, &gamma}) put(*x);
-    }
-  }
-
- private:
-  struct At {
-    Vector x_a{}, x_b{}, u_a{}, u_b{}, force{}, force_rate{};
-    Angular w_a{}, w_b{}, couple{}, couple_rate{};
-    std::array<Vector, 3> a{}, b{};
-  };
-  static std::size_t place_of(const std::array<int, 3>& points, int j) {
-    return static_cast<std::size_t>(points[static_cast<std::size_t>(j)]);
-  }
-  void hand(int k, const Vector& x, const Vector& u, const Vector& force, const Vector& rate,
-            const Angular& couple, const Angular& couple_rate) {
-    if (k < 0) return;
-    auto& body = w_.body[static_cast<std::size_t>(k)];
-    add_force(w_, k, x, force, body.P);
-    add_couple(w_, k, couple, body.P);
-    add_force(w_, k, x, rate, body.T);
-    add_couple(w_, k, Angular(couple_rate + cross(u, force)), body.T);
-  }
-
-  const LoopModel<Space>& model_;
-  Workspace<Space, S>& w_;
-  std::vector<At> at_;
-};
 
 template <class Space, int Level>
 class NumberSweepAt final : public NumberSweep {
@@ -226,13 +34,15 @@ class NumberSweepAt final : public NumberSweep {
       : model_(model),
         places_(number_places(model, loops.loops.size())),
         place_(model),
+        forces_(model, place_.w),
         sums_(static_cast<std::size_t>(places_.size), Lanes(0.0)) {
     if (of_places) {
       loops_.emplace(loops, place_.w);
       sigma_.resize(static_cast<std::size_t>(loops.rows));
     }
-    // Laws of time take one value for all lanes.
-    together_ = model.drives.empty() && model.laws.empty() ? width : 1;
+    // Laws of time take one value for all lanes, and so do forces that choose by values.
+    const bool apart = !model.drives.empty() || !model.laws.empty() || forces_.choose();
+    together_ = apart ? 1 : width;
     for (Waiting& x : waiting_) x.numbers.resize(1 + 4 * place_.q.size() + 2 * sigma_.size());
   }
 
@@ -271,6 +81,12 @@ class NumberSweepAt final : public NumberSweep {
     void operator()(const S& x) {
       *to += factor * (derivative ? x.b[0] : x.a);
       ++to;
+    }
+    /// Of a force without potential: its value times what its coordinate does along the direction.
+    void along(const S& force, const S& coordinate) {
+      S all(0.0);
+      all.b[0] = force.a * coordinate.b[0];
+      (*this)(all);
     }
     void skip(Eigen::Index numbers) { to += numbers; }
   };
@@ -334,14 +150,14 @@ class NumberSweepAt final : public NumberSweep {
     put_inertias();
     if (loops_) {
       body_momenta(place_.w);
-      weights_and_springs();
+      weights_and_forces();
       hand_to_bodies();
       project_inward(place_.w, static_cast<S*>(nullptr));
     }
     put_joints(true, true);
     if (loops_) loops_->each(sigma_.data(), true, put_);
     put_.to = sums_.data() + places_.springs;
-    put_springs();
+    forces_.each(put_);
   }
   /// What loops hand to the bodies.
   void hand_to_bodies() {
@@ -393,8 +209,8 @@ class NumberSweepAt final : public NumberSweep {
     for (int i = 0; i < axes; ++i) put_(moment[i]);
   }
 
-  /// body[k].T of weights and springs.
-  void weights_and_springs() {
+  /// body[k].T of weights and forces.
+  void weights_and_forces() {
     auto& w = place_.w;
     if (model_.has_gravity) gravity_outward(w);
     for (std::size_t k = 0; k < w.body.size(); ++k) {
@@ -405,11 +221,7 @@ class NumberSweepAt final : public NumberSweep {
       for (int i = 0; i < axes; ++i) mc[i] = S(inertia.mc[i]);
       w.body[k].T = Space::weight(S(inertia.m), mc, w.body[k].g);
     }
-    for (const auto& spring : model_.springs) {
-      const SpringLine<Space, S> line(w, spring);
-      if (line.has_direction())
-        line.pull(w, spring, S(spring.stiffness * (line.length - spring.rest) / line.length));
-    }
+    forces_.hand_to_bodies();
   }
   /// The numbers of joints; T* is summed on the way.
   void put_joints(bool of_rates, bool of_forces) {
@@ -433,9 +245,9 @@ class NumberSweepAt final : public NumberSweep {
         const S stretch = q - b.rest;
         put_(-0.5 * (stretch * stretch));
         put_(b.stiffness * stretch);
-        put_along(-u, q);
+        put_.along(-u, q);
         put_(q);
-        put_along(-(u / sqrt(u * u + S(b.friction_rate * b.friction_rate))), q);
+        put_.along(-(u / sqrt(u * u + S(b.friction_rate * b.friction_rate))), q);
       } else {
         put_.skip(5);
       }
@@ -462,6 +274,12 @@ class NumberSweepAt final : public NumberSweep {
         parent.T += Space::to_parent(b.edge, b.kind, s.edge, s.T);
       }
     }
+    if (b.drive >= 0) {
+      Put put = put_;
+      put.to = sums_.data() + places_.drives + NumberPlaces<Space>::of_drive * b.drive;
+      put(Joint<Space>::along(b, s.edge, net));
+      if (of_rates) put(Joint<Space>::along(b, s.edge, s.P));
+    }
     const Force there = Space::to_parent(b.edge, b.kind, s.edge, net);
     if constexpr (axes == 2) {
       const Vector f = in_body_axes(w, b.parent, there.f);
@@ -477,50 +295,11 @@ class NumberSweepAt final : public NumberSweep {
       for (int i = 0; i < 6; ++i) put_(there[i]);
     }
   }
-  /// Of a force without potential: its value times what its coordinate does along the direction.
-  void put_along(const S& force, const S& coordinate) {
-    S along(0.0);
-    along.b[0] = force.a * coordinate.b[0];
-    put_(along);
-  }
-
-  /// Springs between points: ends, k, rest, c and the square of the offset; springs of coordinates:
-  /// k, rest, c.
-  void put_springs() {
-    const auto& w = place_.w;
-    for (const auto& spring : model_.springs) {
-      const SpringLine<Space, S> line(w, spring);
-      if (!line.has_direction()) {
-        put_.skip(NumberPlaces<Space>::of_spring);
-        continue;
-      }
-      const S stretch = line.length - spring.rest, tension = spring.stiffness * stretch;
-      const Vector pull = S(tension / line.length) * line.D;
-      const Vector on_parent = in_body_axes(w, spring.parent, pull),
-                   on_child = in_body_axes(w, spring.child, Vector(-pull));
-      for (const S& x : on_parent.x) put_(x);
-      for (const S& x : on_child.x) put_(x);
-      put_(-0.5 * (stretch * stretch));
-      put_(tension);
-      put_along(-line.rate(w, spring), line.length);
-      put_(-0.5 * (tension / line.length));
-    }
-    for (const auto& spring : model_.coordinate_springs) {
-      S stretch(-spring.rest), rate(0.0);
-      for (const auto& term : spring.terms) {
-        const auto& joint = w.sprung[static_cast<std::size_t>(term.place)];
-        stretch += term.ratio * joint.coordinate;
-        rate += term.ratio * joint.rate;
-      }
-      put_(-0.5 * (stretch * stretch));
-      put_(spring.stiffness * stretch);
-      put_along(-rate, stretch);
-    }
-  }
 
   const Model<Space>& model_;
   NumberPlaces<Space> places_;
   PlacedAlong<Space, Level, width> place_;
+  ForceNumbers<Space, S> forces_;
   std::optional<LoopNumbers<Space, S>> loops_;  ///< none: no places
   std::vector<S> sigma_;
   int together_;             ///< motions that are swept at once

@@ -39,14 +39,19 @@ class TangentSweeps {
 ///     offset across the plane, γ
 ///   - of each spring between points both ends, stiffness, rest, damping, square of the offset; of
 ///     each spring of coordinates stiffness, rest, damping
+///   - of each wrench its point, force, couple; of each bushing its two stiffnesses and dampings,
+///     k, c, k_r, c_r
+///   - of each drive of a joint f and ḟ, at the time of the motion
 template <class Space>
 struct NumberPlaces {
   static constexpr int axes = Space::dimension == 6 ? 3 : 2;
   static constexpr Eigen::Index of_body = Space::dimension == 6 ? 10 : 4,
                                 of_joint = (Space::dimension == 6 ? 6 : 4) + 6,
                                 of_loop = 2 * axes * (1 + axes) + 4, of_spring = 2 * axes + 4,
-                                of_sum = 3;
-  Eigen::Index joints = 0, loops = 0, springs = 0, sums = 0, size = 0;
+                                of_sum = 3, of_wrench = 2 * axes + (axes == 3 ? 3 : 1),
+                                of_bushing = 4, of_drive = 2;
+  Eigen::Index joints = 0, loops = 0, springs = 0, sums = 0, wrenches = 0, bushings = 0, drives = 0,
+               size = 0;
 };
 /// Of a model with so many loops.
 template <class Space>
@@ -58,7 +63,11 @@ NumberPlaces<Space> number_places(const Model<Space>& model, std::size_t loops) 
   at.loops = at.joints + Places::of_joint * n;
   at.springs = at.loops + Places::of_loop * static_cast<Eigen::Index>(loops);
   at.sums = at.springs + Places::of_spring * static_cast<Eigen::Index>(model.springs.size());
-  at.size = at.sums + Places::of_sum * static_cast<Eigen::Index>(model.coordinate_springs.size());
+  at.wrenches =
+      at.sums + Places::of_sum * static_cast<Eigen::Index>(model.coordinate_springs.size());
+  at.bushings = at.wrenches + Places::of_wrench * static_cast<Eigen::Index>(model.wrenches.size());
+  at.drives = at.bushings + Places::of_bushing * static_cast<Eigen::Index>(model.bushings.size());
+  at.size = at.drives + Places::of_drive * static_cast<Eigen::Index>(model.drives.size());
   return at;
 }
 

@@ -1,0 +1,46 @@
+#include <momenta/dae/gradient/drive_slopes.h>
+
+namespace momenta {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// with(place among the numbers, its derivative by θ at t) for f and ḟ of each drive.
+template <class With>
+void each_number(const NumberSlopes& numbers, const OtherParameter& other, double t, With&& with) {
+  if (other.laws.empty()) return;
+  for (std::size_t d = 0; d < other.laws.front().size(); ++d) {
+    double by_f = 0, by_rate = 0;
+    for (std::size_t k = 0; k < other.laws.size(); ++k) {
+      double f, rate, second;
+      other.laws[k][d].evaluate(t, f, rate, second);
+      by_f += sixth_order::points[k].weight / other.h * f;
+      by_rate += sixth_order::points[k].weight / other.h * rate;
+    }
+    const Index at = numbers.drives() + 2 * static_cast<Index>(d);
+    with(at, by_f);
+    with(at + 1, by_rate);
+  }
+}
+
+}  // namespace
+
+void add_drive_slopes(const NumberSlopes& numbers, const std::vector<OtherParameter>& others,
+                      double t, const VectorXd& slopes, VectorXd& by_parameters) {
+  for (std::size_t j = 0; j < others.size(); ++j)
+    each_number(numbers, others[j], t, [&](Index at, double by) {
+      by_parameters[static_cast<Index>(j)] += slopes[at] * by;
+    });
+}
+
+VectorXd by_laws(const NumberSlopes& numbers, const OtherParameter& other, double t,
+                 const MatrixXd& slopes) {
+  VectorXd all = VectorXd::Zero(slopes.rows());
+  each_number(numbers, other, t, [&](Index at, double by) { all += by * slopes.col(at); });
+  return all;
+}
+
+}  // namespace momenta
