@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/gradient/differentiable.h>
@@ -10,7 +11,8 @@
 namespace momenta {
 namespace {
 
-constexpr int most_unknowns = 1000;  ///< nv + m: a dense matrix at each stage
+constexpr int most_unknowns =
+    1000;  ///< nv + m: a dense matrix where rows are redundant, and at the start
 
 }  // namespace
 
@@ -29,6 +31,15 @@ void expect_differentiable(const RunSettings& s, const Mechanism& mechanism) {
                                 std::to_string(most_unknowns) + " for a gradient");
 }
 
+void expect_smooth_motion(const Scene& scene) {
+  refuse_bearings(scene, "a gradient");
+  for (const JointSpec& joint : scene.joints)
+    if (joint.restitution)
+      throw SceneError(scene.where(joint.at) + "joint " + reading::in_quotes(joint.name) +
+                       " has rigid stops, and a run with impacts no gradient here; expected stops "
+                       "that push back ('stop_stiffness'), or no 'restitution'");
+}
+
 std::vector<std::string> corners(const Scene& scene, const std::string& of_functional) {
   std::vector<std::string> remarks;
   const std::string ending =
@@ -41,8 +52,10 @@ std::vector<std::string> corners(const Scene& scene, const std::string& of_funct
       remarks.push_back("the drive of " +
                         reading::in_quotes(drive.joint.empty() ? drive.loop : drive.joint) +
                         ", by '" + corner + "'," + ending);
-  std::vector<std::string> names;
-  for (const ParameterSpec& p : scene.parameters) names.push_back(p.name);
+  for (std::size_t i = 0; i < scene.events.size(); ++i)
+    if (scene.events[i].stop)
+      remarks.push_back("event " + reading::in_quotes(name_of(scene.events[i], i)) +
+                        " would end a run: a gradient goes on to the end time");
   for (const ForceSpec& force : scene.forces) {
     std::vector<std::string> laws{force.law};
     laws.insert(laws.end(), force.force_law.begin(), force.force_law.end());

@@ -13,6 +13,10 @@ namespace momenta {
 /// @throws std::invalid_argument, one sentence, for a form, a method or a size that has no gradient
 void expect_differentiable(const RunSettings& settings, const Mechanism& mechanism);
 
+/// @throws SceneError for a scene whose runs are no motion that is smooth in its numbers: bearings
+/// that rub by their reactions, rigid stops
+void expect_smooth_motion(const Scene& scene);
+
 /// What of the scene, and of the functional's function by this name, is not smooth everywhere: a
 /// sentence each. Empty `of_functional`: none.
 std::vector<std::string> corners(const Scene& scene, const std::string& of_functional);

@@ -1,4 +1,3 @@
-#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/gradient/acceleration_adjoint.h>
@@ -216,7 +215,7 @@ GradientMode gradient_mode(const std::string& name) {
 GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
   const Mechanism mechanism(scene.scene(), scene.options);
   GradientResult result;
-  refuse_bearings(mechanism.scene(), "a gradient");
+  expect_smooth_motion(mechanism.scene());
   result.scene = mechanism.scene().name;
   result.of = request.of;
   result.integral = request.integral;

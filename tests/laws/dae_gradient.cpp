@@ -350,6 +350,10 @@ TEST(Gradient, RefusesInOneSentence) {
   EXPECT_NE(refusal(scene, asked("P.x", {"body.crank.drag"}, "momentum", "reset"))
                 .find("the scene leaves it out"),
             std::string::npos);
+  EXPECT_NE(refusal(of_text(reading::text_of(MOMENTA_SOURCE_DIR "/examples/stops/scene.toml")),
+                    asked("C.q", {"body.crank.mass"}, "momentum", "reset"))
+                .find("joint 'C' has rigid stops, and a run with impacts no gradient here"),
+            std::string::npos);
 }
 
 TEST(Gradient, RefusesMechanismsThatAreTooLarge) {

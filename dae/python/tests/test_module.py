@@ -250,6 +250,17 @@ class Gradients(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "expected one comparison"):
             m.fit(["reach"], sweep="O", least="reach", keep=["reach"])
 
+    def test_fit_finds_parameters_of_a_measured_motion(self):
+        folder = os.path.join(os.environ["MOMENTA_EXAMPLES"], "identification")
+        m = momenta.load(os.path.join(folder, "scene.toml"))
+        found = m.fit(["stiffness", "damping", "centre"], to=os.path.join(folder, "measured.csv"))
+        self.assertTrue(found["converged"])
+        for name, truth in {"stiffness": 6.2, "damping": 0.23, "centre": 0.46}.items():
+            parameter = found["parameters"][name]
+            self.assertLess(abs(parameter["after"] - truth), 2 * parameter["deviation"])
+        with self.assertRaisesRegex(ValueError, "does not go with a measured motion"):
+            m.fit(["centre"], to=os.path.join(folder, "measured.csv"), keep=["centre < 1"])
+
 
 class SmallMotions(unittest.TestCase):
     def test_shapes_solve_the_linearised_equations_of_unit_mass(self):
