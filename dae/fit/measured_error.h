@@ -18,6 +18,7 @@
 
 namespace momenta {
 
+/// Residuals of a measured motion, by θ.
 class MeasuredError {
  public:
   /// `scene`: that of the family, as text. Both and `measured` must outlive it.

@@ -5,6 +5,7 @@
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/study/environment.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "answers.h"
@@ -26,6 +27,11 @@ int identify_verb(const Options& o, const FitOptions& options,
         "--sweep or --least");
   const std::filesystem::path file =
       options.to.empty() ? o.scene.parent_path() / "measured.csv" : options.to;
+  if (options.to.empty() && !std::filesystem::exists(file))
+    throw std::invalid_argument(
+        "expected --sweep NAME, the coordinate that moves the mechanism, --least FORMULA of a run, "
+        "or --to FILE, a measured motion; there is no " +
+        file.string());
   IdentificationRequest request;
   request.parameters = std::move(parameters);
   request.starts = options.starts;

@@ -216,8 +216,7 @@ Verb add_effort(CLI::App& app, Options& o) {
 
 Verb add_fit(CLI::App& app, Options& o) {
   const auto own = std::make_shared<FitOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "fit", "Parameters for which a mechanism does what is wanted, or was measured");
+  CLI::App* verb = app.add_subcommand("fit", "Synthesis and identification: parameters of a scene");
   verb->footer("Example: momenta fit examples/straight_line/scene.toml --vary reach --sweep O");
   add_scene(*verb, o);
   for (const char* unused :

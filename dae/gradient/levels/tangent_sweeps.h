@@ -55,7 +55,7 @@ struct NumberPlaces {
 };
 /// Of a model with so many loops.
 template <class Space>
-NumberPlaces<Space> number_places(const Model<Space>& model, std::size_t loops) {
+MOMENTA_INLINE NumberPlaces<Space> number_places(const Model<Space>& model, std::size_t loops) {
   using Places = NumberPlaces<Space>;
   const auto n = static_cast<Eigen::Index>(model.bodies.size());
   Places at;
