@@ -18,7 +18,8 @@ constexpr std::ptrdiff_t after_drifts = 7;
 std::string growth(const Growth& g) {
   if (std::isnan(g.exponent)) return "-";
   if (std::isnan(g.half_range)) return fixed(g.exponent, 2);
-  return fixed(g.exponent, 2) + "±" + fixed(g.half_range, 2);
+  const std::string range = fixed(g.half_range, 2);
+  return fixed(g.exponent, 2) + "±" + (range.front() == '0' ? range.substr(1) : range);
 }
 
 std::string count(long n) {
@@ -66,6 +67,9 @@ std::string drift_table(const StudyResult& study) {
   }
   for (const RunResult& run : study.runs) rows.push_back(row_of(run, both));
 
+  const std::size_t error = rows.front().size() - 4;
+  if (std::all_of(rows.begin() + 3, rows.end(), [&](const Row& row) { return row[error] == "-"; }))
+    for (Row& row : rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(error));
   const std::size_t columns = rows.front().size();
   std::vector<std::size_t> widest(columns);
   for (const Row& row : rows) {
