@@ -1,3 +1,4 @@
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/measure/reference.h>
 #include <momenta/dae/text/csv_cells.h>
@@ -35,6 +36,7 @@ Reference::Kind kind_of(const std::string& column) {
 }  // namespace
 
 Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
+  reading::expect_plain_file(file, "reference solution in CSV");
   std::ifstream in(file);
   if (!in) throw SceneError(file_ + ": cannot be read; expected a reference solution in CSV");
   std::string line;

@@ -41,8 +41,11 @@ Source source_of(const std::string& state) {
   if (state == "-") return {"standard input", all_of(std::cin, "standard input")};
   const std::string name = reading::on_one_line(state);
   std::error_code trouble;
-  if (std::filesystem::is_directory(state, trouble))
+  const auto status = std::filesystem::status(state, trouble);
+  if (std::filesystem::is_directory(status))
     throw SceneError(name + ": found a directory, expected a JSON file with a state");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw SceneError(name + ": found a pipe or a device, expected a JSON file with a state, or -");
   std::ifstream in(state, std::ios::binary);
   if (!in)
     throw SceneError(name +

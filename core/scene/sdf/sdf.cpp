@@ -124,6 +124,9 @@ void take_model(const Node& node, const std::string& scope, bool still, SdfModel
                      {read_pose(mine), relative_to(link, "__model__"), "", ""}, mine);
     const std::string body =
         model.bodies.free(waiting.one_model ? full.substr(full.find("::") + 2) : full);
+    if (body.starts_with("ground ") && full.ends_with("::ground"))
+      model.remarks.say("called " + in_quotes(body) +
+                        ", as ground is what does not move: link 'ground'");
     model.body_of[full] = body;
     if (still) model.fixed.insert(body);
     waiting.links.emplace_back(full, mine);
@@ -171,7 +174,9 @@ Scene read_sdf(const Element& element, const std::string& file) {
   model.scene.file = file;
   const Element whole = with_sdf_includes(element, file, model.scene.included);
   const Node sdf(whole, "", file);
+  refuse_misspelt(sdf, sdf_elements());
   model.scene.gravity = {0, 0, -9.8};
+  model.bodies.take("ground");
   model.version = read_sdf_version(sdf);
   const std::vector<Node> worlds = sdf.children("world"), models = sdf.children("model");
   if (worlds.size() + models.size() != 1)

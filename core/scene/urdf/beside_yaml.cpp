@@ -78,7 +78,7 @@ class YamlBeside {
       known.push_back(joint.name);
     }
     for (const BodySpec& body : scene_.bodies) {
-      if (body.name == frame) return frame;
+      if (body.name == frame || (frame == "ground" && body.name == ground_link)) return body.name;
       known.push_back(body.name);
     }
     fail(node, "closed_loop has " + in_quotes(frame) + ", expected a joint or a link of " +

@@ -10,6 +10,44 @@
 
 namespace momenta::reading {
 
+namespace {
+
+bool is_ground(std::string text) {
+  text.erase(0, text.find_first_not_of(" \t\r\n"));
+  text.erase(text.find_last_not_of(" \t\r\n") + 1);
+  return text == "ground";
+}
+
+/// Where the name of a link stands: in an attribute, or in a <joint> of <gazebo> as text.
+void rename_in(Element& element) {
+  for (Attribute& a : element.attributes)
+    if ((a.name == "link" || a.name == "reference" ||
+         (element.name == "link" && a.name == "name")) &&
+        is_ground(a.text))
+      a.text = ground_link;
+  if ((element.name == "parent" || element.name == "child") && is_ground(element.text))
+    element.text = ground_link;
+  for (Element& child : element.children) rename_in(child);
+}
+
+}  // namespace
+
+bool rename_ground(Element& robot, bool free) {
+  bool there = false, root = true;
+  for (const Element& part : robot.children) {
+    const std::string* const name = part.find("name");
+    there |= part.name == "link" && name != nullptr && is_ground(*name);
+    if (part.name != "joint") continue;
+    for (const Element& end : part.children) {
+      const std::string* const link = end.find("link");
+      root &= end.name != "child" || link == nullptr || !is_ground(*link);
+    }
+  }
+  if (!there || (root && !free)) return false;
+  rename_in(robot);
+  return true;
+}
+
 bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
                FreeNames& edges) {
   std::map<std::string, const Node*> roots;
@@ -37,10 +75,6 @@ bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, 
                ", expected one root and a tree below it");
   const std::string root = roots.begin()->first;
   if (root == "ground") {
-    if (free)
-      roots.begin()->second->fail(
-          "is the root and called ground, which cannot be free; expected "
-          "another name");
     std::erase_if(scene.bodies, [](const BodySpec& body) { return body.name == "ground"; });
     return false;
   }
