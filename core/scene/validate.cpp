@@ -64,10 +64,12 @@ void check_second_direction(const Scene& scene, const Edge& joint, const Eigen::
   if (second == Eigen::Vector3d::Zero()) return;
   if (joint.kind != owner)
     throw SceneError(scene.where(joint.at) + what + " is for " + std::string(name_of(owner)) +
-                     (std::is_same_v<Kind, LoopKind> ? " loops only" : " joints only"));
+                     (std::is_same_v<Kind, LoopKind> ? " loops only" : " joints only") +
+                     ", expected none here");
   if (!(std::abs(second.norm() - 1) <= reading::norm_slack))
-    throw SceneError(scene.where(joint.at) + what +
-                     " must be a unit vector within 1e-6, or zero for the default");
+    throw SceneError(
+        scene.where(joint.at) + what +
+        " is no direction, expected a unit vector within 1e-6, or zero for the default");
   if (joint.axis.cross(second).norm() < reading::parallel_slack)
     throw SceneError(scene.where(joint.at) + what +
                      " is parallel to axis, expected another direction");

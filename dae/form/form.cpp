@@ -118,7 +118,7 @@ std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechan
   const Entry& e = entry(name);
   if (e.kind == Kind::dae && options.project)
     throw std::invalid_argument("position correction after steps needs a one-step method; '" +
-                                name + "' is integrated by IDA");
+                                name + "' is integrated by IDA, expected an ODE form");
   if (const JointSpec* joint = with_bearing(mechanism.scene()); joint && !e.bearings)
     throw std::invalid_argument(
         "joint '" + joint->name + "' has a bearing, whose friction takes accelerations and " +

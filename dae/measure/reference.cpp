@@ -71,7 +71,8 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
         refuse("found '" + cell.substr(0, 40) + "'; expected a finite number");
       row.push_back(value);
     }
-    if (!times_.empty() && !(row.front() > times_.back())) refuse("time does not increase");
+    if (!times_.empty() && !(row.front() > times_.back()))
+      refuse("time does not increase; expected a later time than that of the line before");
     times_.push_back(row.front());
     row.erase(row.begin());
     values_.push_back(std::move(row));

@@ -76,7 +76,7 @@ StateText::StateText(const std::string& state, std::span<const std::string_view>
   for (const auto& [key, value] : json_.items())
     if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) {
       std::string which = reading::did_you_mean(key, keys_);
-      if (which.empty()) which = "; expected " + listed();
+      which = "; expected " + listed() + which;
       fail("key " + reading::in_quotes(key) + " is not known" + which);
     }
 }
@@ -149,7 +149,7 @@ void StateText::unknown_joint(const std::string& name, const std::string& key,
                               std::span<const std::string_view> names,
                               const std::string& word) const {
   std::string which = reading::did_you_mean(name, names);
-  if (which.empty()) which = "; expected a " + word + " of the scene";
+  which = "; expected a " + word + " of the scene" + which;
   fail("key '" + key + "': " + word + " " + reading::in_quotes(name) + " is not in the scene" +
        which);
 }

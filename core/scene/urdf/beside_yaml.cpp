@@ -200,7 +200,8 @@ void read_yaml(const std::filesystem::path& path, bool asked, Scene& scene, Free
     remarks.left_out("motors of name_mot, which drive nothing here");
   }
 } catch (const YAML::Exception& error) {
-  fail(path.string(), place(error.mark), "not valid YAML: " + on_one_line(error.msg));
+  fail(path.string(), place(error.mark),
+       "not valid YAML: " + on_one_line(error.msg) + ", expected lists closed_loop and type");
 }
 
 }  // namespace
