@@ -100,6 +100,18 @@ void check_pose(const Scene& scene, const JointSpec& joint, const std::string& w
           "law gives a matrix at the start that is no rotation within 1e-10");
 }
 
+/// Beyond a number of turns an angle is rounded to more than loops close to.
+void check_angles(const Scene& scene, const JointSpec& joint, const std::string& who) {
+  constexpr double largest = 1e9;  // [rad], rounded to 1e-7
+  const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::helical ||
+                     joint.kind == JointKind::universal;
+  for (const double q : turns ? joint.position : std::vector<double>{})
+    require(std::abs(q) <= largest, scene, joint.at, who,
+            ("position is " + reading::digits(q) +
+             " rad, where numbers are more than 1e-7 rad apart, expected at most 1e9 rad")
+                .c_str());
+}
+
 void check_quaternion(const Scene& scene, const JointSpec& joint, const std::string& who) {
   if (joint.position.size() < 4) return;
   const Eigen::Map<const Eigen::Vector4d> quaternion(joint.position.data() + joint.position.size() -
@@ -144,6 +156,7 @@ void check_joints(const Scene& scene, const Census& census) {
             scene, joint.at, who, "velocity must be empty or of the size of its kind");
     require(all_finite(joint.position) && all_finite(joint.velocity), scene, joint.at, who,
             "position and velocity must be finite");
+    check_angles(scene, joint, who);
     if (joint.kind == JointKind::spherical || joint.kind == JointKind::free)
       check_quaternion(scene, joint, who);
     if (joint.kind == JointKind::user) check_pose(scene, joint, who);

@@ -92,16 +92,16 @@ const Case wrong_urdf[] = {
      "<parent link='a'/><child link='c'/></joint>\n<joint name='k' type='fixed'><parent link='a'/>"
      "<child link='b'/></joint>\n<joint name='l' type='fixed'><parent link='b'/><child "
      "link='c'/></joint></robot>",
-     ":4: body 'c' is the child of joints 'j' and 'l', expected exactly one"},
+     ":4: link 'c' is the child of joints 'j' and 'l', expected exactly one; a loop is a <loop>"},
     {"two_roots", "<robot>\n<link name='a'/><link name='b'/></robot>",
      ":1: <robot> has two links that are no joint's child, 'a' and 'b', expected one root"},
     {"cycle",
      "<robot><link name='a'/><link name='b'/>\n<joint name='j' type='fixed'><parent link='a'/>"
      "<child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child "
      "link='a'/></joint></robot>",
-     "form a cycle"},
+     "joints 'j', 'k' form a cycle, b <- a <- b, expected a tree"},
     {"link_twice", "<robot><link name='a'/>\n<link name='a'/></robot>",
-     ":2: body 'a': the name is taken since line 1"},
+     ":2: link 'a': <link> is the second of that name, expected each name once"},
     {"mass",
      "<robot><link name='a'><inertial>\n<mass value='1 kg'/><inertia ixx='1' iyy='1' "
      "izz='1'/></inertial></link></robot>",

@@ -110,7 +110,7 @@ class Way {
     }
     if (!best) {
       std::vector<std::string_view> names;
-      for (const Value& table : list.items)
+      for (Value& table : list.items)
         if (!name_of(table).empty()) names.push_back(name_of(table));
       fail("the scene has no " + std::string(taken()) + " of that name, expected one of: " +
            listed(names) + did_you_mean(rest_.substr(0, rest_.find('.')), names));

@@ -32,6 +32,38 @@ void rename_in(Element& element) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* loops_of_urdf =
+    "; a loop is a <loop>, a <joint> in <gazebo>, or stands in a YAML file beside the URDF";
+
+/// @pre every joint's child is the child of no other one
+void expect_no_cycle(const std::map<std::string, const JointSpec*>& inward, const Scene& scene) {
+  std::map<std::string, const JointSpec*> seen;  // by link: the joint its walk inwards began at
+  for (const JointSpec& start : scene.joints) {
+    std::string link = start.child;
+    for (auto in = inward.find(link); in != inward.end(); in = inward.find(link)) {
+      const auto [before, fresh] = seen.emplace(link, &start);
+      if (!fresh && before->second != &start) break;
+      if (!fresh) {
+        std::string joints, links = on_one_line(link);
+        const std::string first = link;
+        do {
+          const JointSpec& joint = *inward.at(link);
+          joints += (joints.empty() ? "" : ", ") + in_quotes(joint.name);
+          link = joint.parent;
+          links += " <- " + on_one_line(link);
+        } while (link != first);
+        throw SceneError(scene.where(start.at) + "joints " + joints + " form a cycle, " + links +
+                         ", expected a tree" + loops_of_urdf);
+      }
+      link = in->second->parent;
+    }
+  }
+}
+
+}  // namespace
+
 bool rename_ground(Element& robot, bool free) {
   bool there = false, root = true;
   for (const Element& part : robot.children) {
@@ -51,7 +83,9 @@ bool rename_ground(Element& robot, bool free) {
 bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
                FreeNames& edges) {
   std::map<std::string, const Node*> roots;
-  for (const Node& link : links) roots.emplace(link.text("name"), &link);
+  for (const Node& link : links)
+    if (!roots.emplace(link.text("name"), &link).second)
+      link.fail("is the second of that name, expected each name once");
   for (const JointSpec& joint : scene.joints) {
     const auto known = [&](const std::string& link, const char* what) {
       if (roots.contains(link)) return;
@@ -64,11 +98,16 @@ bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, 
     known(joint.parent, "parent");
     known(joint.child, "child");
   }
-  for (const JointSpec& joint : scene.joints) roots.erase(joint.child);
-  if (roots.empty()) {  // the joints form a cycle, which the sentence names
-    validate(scene);
-    return false;
+  std::map<std::string, const JointSpec*> inward;
+  for (const JointSpec& joint : scene.joints) {
+    roots.erase(joint.child);
+    const auto [other, fresh] = inward.emplace(joint.child, &joint);
+    if (!fresh)
+      throw SceneError(scene.where(joint.at) + "link " + in_quotes(joint.child) +
+                       " is the child of joints " + in_quotes(other->second->name) + " and " +
+                       in_quotes(joint.name) + ", expected exactly one" + loops_of_urdf);
   }
+  expect_no_cycle(inward, scene);
   if (roots.size() > 1)
     robot.fail("has two links that are no joint's child, " + in_quotes(roots.begin()->first) +
                " and " + in_quotes(std::next(roots.begin())->first) +
