@@ -31,7 +31,8 @@ void show(StudyResult& study, const Options& o, const Mechanism& mechanism,
 void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly) {
   study.scene = mechanism.scene().name;
-  study.scene_file = reading::as_utf8(o.scene.string());
+  study.scene_file = o.scene.string();
+  study.reference = reading::as_utf8(study.reference);
   if (const std::string rates = replaced_rates_in_words(mechanism, assembly.start);
       !rates.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: %s: %s\n", o.scene.c_str(), rates.c_str());

@@ -78,7 +78,7 @@ TEST_F(Inputs, FilesOfFunctionsStayInTheFolder) {
   fs::create_directories(folder_ / "inner");
   write("secret.csv", "root,b\n0,1\n1,2\n");
   fs::create_symlink(folder_ / "secret.csv", folder_ / "inner/link.csv");
-  for (const std::string name :
+  for (const std::string& name :
        {std::string("../secret.csv"), std::string("link.csv"), (folder_ / "secret.csv").string()}) {
     write("inner/s.toml", std::string(one_body) + "[[function]]\nname = 'f'\nfile = '" + name +
                               "'\nx = 'root'\ny = 'c'\n");
