@@ -14,7 +14,7 @@ Tree checked_tree(const Scene& scene) {
                      "formulas");
   if (!scene.loops.empty())
     throw SceneError(scene.where(scene.loops.front().at) + "loop '" + scene.loops.front().name +
-                     "' closes the tree, but an open chain has no loops");
+                     "' closes the tree, but an open chain has no loops, expected a tree");
   return build_tree(scene);
 }
 

@@ -15,7 +15,8 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
       plan.planar = true;
       plan.basis = *plane.basis;
     } else if (algebra == Algebra::planar) {
-      throw SceneError(scene.where({}) + "the planar kernel was asked for, but " + plane.why);
+      throw SceneError(scene.where({}) + "the planar kernel was asked for, but " + plane.why +
+                       ", expected a mechanism in a plane, or the spatial kernel");
     } else {
       plan.planar_reason = plane.why;
     }

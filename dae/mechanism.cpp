@@ -36,7 +36,8 @@ Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
   const std::string why = loops_leave_plane(scene, tree, plan.basis);
   if (why.empty()) return plan;
   if (algebra == Algebra::planar)
-    throw SceneError(scene.where({}) + "the planar kernel was asked for, but " + why);
+    throw SceneError(scene.where({}) + "the planar kernel was asked for, but " + why +
+                     ", expected a mechanism in a plane, or the spatial kernel");
   plan = make_plan(tree, scene, Algebra::spatial);
   plan.planar_reason = why;
   return plan;

@@ -181,7 +181,7 @@ class Parser : Scanner {
       Term t = any();
       if (!take(")")) {
         if (!at_end()) fail_here(", expected an operator or ')'");
-        fail(from, "a bracket '(' is not closed");
+        fail(from, "a bracket '(' is not closed, expected ')'");
       }
       t.place = from;
       return t;
@@ -189,7 +189,8 @@ class Parser : Scanner {
     if (at_number()) return {tape_.number(take_number()), false, from};
     if (at_letter()) return named(from);
     if (rest().front() == '\'') {
-      if (word().size() == 1) fail(from, "a quote ' is not closed");
+      if (word().size() == 1)
+        fail(from, "a quote ' is not closed, expected another ' behind a name");
       return named(from);
     }
     fail_here(", expected a number or a name");
@@ -249,7 +250,8 @@ class Parser : Scanner {
       while (take(","));
       if (!take(")")) {
         if (!at_end()) fail_here(", expected ',' or ')'");
-        fail(place(), "the bracket of function " + reading::in_quotes(name) + " is not closed");
+        fail(place(), "the bracket of function " + reading::in_quotes(name) +
+                          " is not closed, expected ')'");
       }
     }
     if (static_cast<int>(arguments.size()) != expected)
@@ -287,7 +289,8 @@ class Parser : Scanner {
    public:
     explicit Depth(Parser& parser) : parser_(parser) {
       if (++parser_.depth_ > deepest)
-        parser_.fail(parser_.place(), "is nested more than " + std::to_string(deepest) + " deep");
+        parser_.fail(parser_.place(), "is nested more than " + std::to_string(deepest) +
+                                          " deep, expected fewer brackets");
     }
     ~Depth() { --parser_.depth_; }
     Depth(const Depth&) = delete;

@@ -12,9 +12,21 @@ namespace momenta::reading {
 
 inline constexpr std::size_t largest_text = std::size_t{64} << 20;  ///< [byte]
 
-/// The whole file. Its size is asked before a byte is read; what has no size (a pipe) is read up to
-/// the limit of 64 MiB. `kind` says what it should be. @throws SceneError
+/// A pipe or a device may never end, nor begin. `kind` says what it should be. @throws SceneError
+/// where there is none, or a directory, a pipe, a device
+void expect_plain_file(const std::filesystem::path& file, const std::string& kind);
+
+/// The whole file, which is a plain one of at most 64 MiB. @throws SceneError
 std::string text_of(const std::filesystem::path& file, const std::string& kind = "scene");
+
+/// A file that another one names.
+struct NamedFile {
+  std::filesystem::path path;  ///< its symbolic links followed
+  std::string fault;           ///< why it is refused, as the rest of a sentence; empty: it is not
+};
+/// It has to be a plain file in `folder` or below, by `..` and by symbolic links alike: a scene
+/// from elsewhere does not read what it was not given.
+NamedFile file_inside(const std::string& name, const std::filesystem::path& folder);
 
 /// The place in the file of a character of a text in quotes that begins at `at`; of one over
 /// several lines that of the text.

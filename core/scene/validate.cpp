@@ -64,10 +64,12 @@ void check_second_direction(const Scene& scene, const Edge& joint, const Eigen::
   if (second == Eigen::Vector3d::Zero()) return;
   if (joint.kind != owner)
     throw SceneError(scene.where(joint.at) + what + " is for " + std::string(name_of(owner)) +
-                     (std::is_same_v<Kind, LoopKind> ? " loops only" : " joints only"));
+                     (std::is_same_v<Kind, LoopKind> ? " loops only" : " joints only") +
+                     ", expected none here");
   if (!(std::abs(second.norm() - 1) <= reading::norm_slack))
-    throw SceneError(scene.where(joint.at) + what +
-                     " must be a unit vector within 1e-6, or zero for the default");
+    throw SceneError(
+        scene.where(joint.at) + what +
+        " is no direction, expected a unit vector within 1e-6, or zero for the default");
   if (joint.axis.cross(second).norm() < reading::parallel_slack)
     throw SceneError(scene.where(joint.at) + what +
                      " is parallel to axis, expected another direction");
@@ -96,6 +98,18 @@ void check_pose(const Scene& scene, const JointSpec& joint, const std::string& w
   const double fault = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require(fault <= slack && r.determinant() > 0, scene, joint.at, who,
           "law gives a matrix at the start that is no rotation within 1e-10");
+}
+
+/// Beyond a number of turns an angle is rounded to more than loops close to.
+void check_angles(const Scene& scene, const JointSpec& joint, const std::string& who) {
+  constexpr double largest = 1e9;  // [rad], rounded to 1e-7
+  const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::helical ||
+                     joint.kind == JointKind::universal;
+  for (const double q : turns ? joint.position : std::vector<double>{})
+    require(std::abs(q) <= largest, scene, joint.at, who,
+            ("position is " + reading::digits(q) +
+             " rad, where numbers are more than 1e-7 rad apart, expected at most 1e9 rad")
+                .c_str());
 }
 
 void check_quaternion(const Scene& scene, const JointSpec& joint, const std::string& who) {
@@ -142,6 +156,7 @@ void check_joints(const Scene& scene, const Census& census) {
             scene, joint.at, who, "velocity must be empty or of the size of its kind");
     require(all_finite(joint.position) && all_finite(joint.velocity), scene, joint.at, who,
             "position and velocity must be finite");
+    check_angles(scene, joint, who);
     if (joint.kind == JointKind::spherical || joint.kind == JointKind::free)
       check_quaternion(scene, joint, who);
     if (joint.kind == JointKind::user) check_pose(scene, joint, who);

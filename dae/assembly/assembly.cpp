@@ -116,7 +116,7 @@ class Assembler {
   [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) {
     const Scene& scene = mechanism_.scene();
     expect_no_lost_loop(mechanism_, e());
-    std::string open;
+    std::string open, within;
     Location at;
     int row = 0;
     const std::string word = std::string(loop_word(mechanism_)) + " '";
@@ -129,6 +129,12 @@ class Assembler {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
       if (open.empty()) at = place;
+      // A gap so small that it has to be told what it is more than.
+      if (largest < 1e-6 * row_[row - 1] && within.empty()) {
+        char bound[32];
+        std::snprintf(bound, sizeof bound, " to %.2g", tolerance * row_[row - 1]);
+        within = bound;
+      }
       open += (open.empty() ? "" : ", ") + word + name + "' stays open by " + text;
     };
     for (const auto& loop : scene.loops) judge(loop.name, loop.at);
@@ -144,7 +150,7 @@ class Assembler {
         std::to_string(mechanism_.m()) + " equations, " +
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
         " free rates); expected " +
-        (scene.lagrangian ? "constraints that can be met" : "loops that close"));
+        (scene.lagrangian ? "constraints that can be met" : "loops that close") + within);
   }
 
   void close_velocities(Assembly& a) {

@@ -82,13 +82,14 @@ Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
   of_coordinates.insert(scene.held.begin(), scene.held.end());
   in_formulas = NamedInFormulas(scene).joints;
   of_coordinates.insert(in_formulas.begin(), in_formulas.end());
-  std::set<std::string> known;
-  for (const JointSpec& joint : scene.joints) known.insert(joint.name);
-  for (const LoopSpec& loop : scene.loops) known.insert(loop.name);
+  std::vector<std::string_view> known;
+  for (const JointSpec& joint : scene.joints) known.push_back(joint.name);
+  for (const LoopSpec& loop : scene.loops) known.push_back(loop.name);
   for (const std::string& name : keep)
-    if (!known.contains(name))
+    if (std::find(known.begin(), known.end(), name) == known.end())
       throw SceneError(scene.where({}) + "joint or loop " + reading::in_quotes(name) +
-                       ", to be kept, is not in the scene");
+                       ", to be kept, is not in the scene, expected the name of one" +
+                       reading::did_you_mean(name, known));
 }
 
 namespace {

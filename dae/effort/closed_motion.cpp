@@ -39,9 +39,10 @@ ClosedMotion::ClosedMotion(const Mechanism& mechanism, const GivenMotion& motion
   if (open > tolerance_ && open <= left_by_files) tolerance_ = 2 * left_by_files;
   for (const LoopIsland& island : islands_.all()) {
     if (static_cast<int>(island.rates.size()) > most_rates)
-      throw SceneError("loops tie " + std::to_string(island.rates.size()) +
-                       " rates to each other; motions are closed by dense matrices, up to " +
-                       std::to_string(most_rates));
+      throw SceneError(
+          "loops tie " + std::to_string(island.rates.size()) +
+          " rates to each other; motions are closed by dense matrices, expected up to " +
+          std::to_string(most_rates));
     given_.emplace_back();
     for (std::size_t i = 0; i < island.rates.size(); ++i)
       if (motion.given[static_cast<std::size_t>(island.rates[i])])

@@ -66,9 +66,11 @@ void bounds_of(const std::vector<FittedParameter>& parameters, VectorXd& least, 
 
 void expect_starts(const ParametricMechanism& family,
                    const std::vector<FittedParameter>& parameters, int starts) {
-  if (parameters.empty()) throw std::invalid_argument("no parameter to vary is named");
+  if (parameters.empty())
+    throw std::invalid_argument("found no parameter to vary, expected the name of one");
   if (parameters.size() != family.names().size())
-    throw std::invalid_argument("the parameters asked for are not those of the mechanism");
+    throw std::invalid_argument(
+        "found other parameters than those of the mechanism, expected the same");
   if (starts < 1) throw std::invalid_argument("found no starts, expected one or more");
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const FittedParameter& p = parameters[j];
@@ -79,7 +81,7 @@ void expect_starts(const ParametricMechanism& family,
                                   "=FROM:TO");
     if (p.range && !(own >= (*p.range)[0] && own <= (*p.range)[1]))
       throw std::invalid_argument("parameter '" + p.name + "' is " + reading::digits(own) +
-                                  " in the scene, outside its range from " +
+                                  " in the scene, expected a number in its range, from " +
                                   reading::digits((*p.range)[0]) + " to " +
                                   reading::digits((*p.range)[1]));
   }

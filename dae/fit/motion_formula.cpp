@@ -49,7 +49,7 @@ std::size_t closing(const std::string& text, std::size_t at, bool& comma) {
     else if (text[i] == ',' && depth == 1)
       comma = true;
   }
-  refuse(text, "a bracket is not closed");
+  refuse(text, "a bracket is not closed, expected ')'");
 }
 
 /// Whether the formula knows all its names.

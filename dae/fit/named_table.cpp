@@ -67,7 +67,7 @@ class Reader {
     for (const std::string& cell : csv_cells(line)) {
       const std::size_t place = known(cell);
       if (std::find(table_.columns.begin(), table_.columns.end(), place) != table_.columns.end())
-        refuse("column '" + form_.known[place].name + "' stands twice");
+        refuse("column '" + form_.known[place].name + "' stands twice, expected it once");
       table_.columns.push_back(place);
     }
     if (table_.columns == std::vector<std::size_t>{form_.whole}) refuse(form_.whole_alone);

@@ -59,7 +59,8 @@ ParametricMechanism::ParametricMechanism(std::string text, std::string file,
   own_.resize(static_cast<Eigen::Index>(names_.size()));
   for (std::size_t i = 0; i < names_.size(); ++i) {
     if (std::count(names_.begin(), names_.end(), names_[i]) > 1)
-      throw std::invalid_argument(reading::in_quotes(names_[i]) + " is varied twice");
+      throw std::invalid_argument(reading::in_quotes(names_[i]) +
+                                  " is varied twice, expected each name once");
     own_[static_cast<Eigen::Index>(i)] = own_number(own, names_[i]);
   }
 }

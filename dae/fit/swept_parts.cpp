@@ -39,7 +39,8 @@ SweptParts::SweptParts(const ParametricMechanism& family, VectorXd sizes, SweptW
                                 reading::digits((*way_.between)[1]) +
                                 ", expected finite ends, the smaller first");
   if (!std::isfinite(way_.rate))
-    throw std::invalid_argument("the rate of the swept coordinate is not finite");
+    throw std::invalid_argument("the rate of the swept coordinate is " +
+                                reading::digits(way_.rate) + ", expected a finite number");
   const auto mechanism = family.at(family.own());
   const std::vector<Column> q = mechanism->coordinate_columns(), u = mechanism->rate_columns(),
                             markers = mechanism->marker_columns();

@@ -1,4 +1,5 @@
 #include <momenta/core/scene/bearings_refused.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/ode_form.h>
 
@@ -51,9 +52,11 @@ const std::vector<Entry>& registry() {
 const Entry& entry(const std::string& name) {
   for (const auto& e : registry())
     if (e.name == name) return e;
-  std::string all;
-  for (const auto& e : registry()) all += (all.empty() ? "" : ", ") + e.name;
-  throw std::invalid_argument("form '" + name + "' is not known; expected one of " + all);
+  std::vector<std::string_view> all;
+  for (const auto& e : registry()) all.push_back(e.name);
+  throw std::invalid_argument("form " + reading::in_quotes(name) +
+                              " is not known; expected one of " + reading::listed(all) +
+                              reading::did_you_mean(name, all));
 }
 
 }  // namespace
@@ -115,7 +118,7 @@ std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechan
   const Entry& e = entry(name);
   if (e.kind == Kind::dae && options.project)
     throw std::invalid_argument("position correction after steps needs a one-step method; '" +
-                                name + "' is integrated by IDA");
+                                name + "' is integrated by IDA, expected an ODE form");
   if (const JointSpec* joint = with_bearing(mechanism.scene()); joint && !e.bearings)
     throw std::invalid_argument(
         "joint '" + joint->name + "' has a bearing, whose friction takes accelerations and " +

@@ -148,11 +148,12 @@ class Search {
     for (Eigen::Index k = 0; k < null.cols(); ++k)
       names.push_back(
           coordinate_of(rates[static_cast<std::size_t>(pivots.colsPermutation().indices()[k])]));
-    throw SceneError("what is held leaves " + std::to_string(null.cols()) +
-                     (null.cols() == 1 ? " degree" : " degrees") +
-                     " of freedom, and assemblies that are no isolated poses; hold as many "
-                     "coordinates, such as " +
-                     reading::all_in_quotes(names));
+    throw SceneError(
+        "what is held leaves " + std::to_string(null.cols()) +
+        (null.cols() == 1 ? " degree" : " degrees") +
+        " of freedom, and assemblies that are no isolated poses; expected as many coordinates "
+        "held, such as " +
+        reading::all_in_quotes(names));
   }
 
   /// The name of the coordinate that has this rate.

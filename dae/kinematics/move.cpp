@@ -78,19 +78,23 @@ class Follower {
     if (!curve_->start(q, here_)) {
       if (curve_->freedoms() == 0)
         throw SceneError("coordinate '" + first +
-                         "' cannot be swept: what is held and the loops leave no motion");
+                         "' cannot be swept: what is held and the loops leave no motion, expected "
+                         "a mechanism that "
+                         "moves");
       std::vector<std::string> names;
       for (const int u : curve_->free_rates())
         names.push_back(result_.rates[static_cast<std::size_t>(u)].name);
       const int more = curve_->freedoms() - 1;
       throw SceneError("sweeping '" + first + "' leaves " + std::to_string(more) +
                        (more == 1 ? " more degree" : " more degrees") +
-                       " of freedom; hold or sweep as many coordinates, such as " +
+                       " of freedom; expected as many coordinates held or swept, such as " +
                        reading::all_in_quotes(names));
     }
     if (stays())
       throw SceneError("coordinate '" + first +
-                       "' cannot be swept: the loops hold it where it is, whatever else moves");
+                       "' cannot be swept: the loops hold it where it is, whatever else moves; "
+                       "expected one that "
+                       "moves");
     if (request_.to && *request_.to < result_.start) {
       here_.tangent = -here_.tangent;
       here_.orientation = -here_.orientation;
@@ -286,14 +290,22 @@ class Follower {
 MoveResult move(const Mechanism& mechanism, double t, const VectorXd& q,
                 const MoveRequest& request) {
   constexpr int most_rates = 2000;
-  if (request.sweep.empty()) throw SceneError("no coordinate to sweep is named");
+  if (request.sweep.empty())
+    throw SceneError("found no coordinate to sweep, expected the name of one");
   if (mechanism.nv() > most_rates)
     throw SceneError("the mechanism has " + std::to_string(mechanism.nv()) +
-                     " rates; its curve of poses is followed by dense matrices, up to " +
+                     " rates; its curve of poses is followed by dense matrices, expected up to " +
                      std::to_string(most_rates));
-  if (!(request.by >= 0) || !std::isfinite(request.by) ||
-      (request.to && !std::isfinite(*request.to)))
-    throw SceneError("poses are asked for at no finite place");
+  const auto expect_finite = [](const char* option, double x, bool good, const char* expected) {
+    if (!good)
+      throw SceneError(std::string(option) + " is " + reading::digits(x) + ", expected " +
+                       expected);
+  };
+  expect_finite("--by", request.by, request.by >= 0 && std::isfinite(request.by),
+                "a finite number >= 0");
+  if (request.to)
+    expect_finite("--to", *request.to, std::isfinite(*request.to),
+                  "a finite coordinate [rad or m]");
   return Follower(mechanism, t, request).follow(q);
 }
 

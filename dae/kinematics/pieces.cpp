@@ -19,7 +19,8 @@ std::string Tie::in_words() const {
 
 void refuse_in_space(const Mechanism& mechanism, Location at, const std::string& why) {
   throw SceneError(mechanism.scene().where(at) +
-                   "its loops, in space, are not written as polynomials: " + why);
+                   "its loops, in space, are not written as polynomials: " + why +
+                   (why.find("expected") == why.npos ? "; expected --by search" : ""));
 }
 
 Pieces::Pieces(const Mechanism& mechanism, double t, const std::vector<Isometry3d>& poses,

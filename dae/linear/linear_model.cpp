@@ -45,7 +45,8 @@ class Eliminated {
     for (const MatrixXd* x :
          {&l_.M, &l_.C, &l_.K, &l_.loops, &l_.loop_rates, &l_.second_by_rates, &l_.second_by_poses,
           &l_.turning, &l_.markers_by_poses, &l_.markers_by_rates})
-      if (!x->allFinite()) refuse("the linearised equations are not finite at this state");
+      if (!x->allFinite())
+        refuse("the linearised equations are not finite at this state, expected another");
     append_loop_drives();
   }
 
@@ -187,7 +188,8 @@ class Eliminated {
       a->bottomRows(more).setZero();
     }
     for (const MatrixXd* x : {&l_.loops, &l_.loop_rates, &l_.second_by_poses, &l_.K})
-      if (!x->allFinite()) refuse("the linearised equations are not finite at this state");
+      if (!x->allFinite())
+        refuse("the linearised equations are not finite at this state, expected another");
   }
 
   /// M δu̇ + C δu + K δ + Aᵀ δλ − τ
@@ -211,7 +213,7 @@ class Eliminated {
       e->joint_forces(at_.q.data(), at_.u.data(), udot_.data(), lambda_.data(), r.data());
       if (m > 0) e->accelerations(second.data());
       if (!r.allFinite() || !second.allFinite())
-        refuse("the equations of motion are not finite at this state");
+        refuse("the equations of motion are not finite at this state, expected another");
     };
     e->place(at_.t, at_.q.data());
     e->move(at_.u.data());
@@ -219,7 +221,7 @@ class Eliminated {
     const MatrixXd every = MatrixXd::Identity(nv_, nv_);
     const Linearisation l = linearise(mechanism_, at_.t, at_.q, lambda_, every);
     if (!l.M.allFinite() || !l.loops.allFinite())
-      refuse("the equations of motion are not finite at this state");
+      refuse("the equations of motion are not finite at this state, expected another");
     MatrixXd N = MatrixXd::Zero(nv_, size(c_.free_rates));
     for (Eigen::Index i = 0; i < N.cols(); ++i) N(at(c_.free_rates, i), i) = 1;
     Lu lu, transposed;

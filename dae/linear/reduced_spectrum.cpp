@@ -172,8 +172,9 @@ void reduced_spectrum(const Mechanism& mechanism, const Equilibrium& at, const M
   r.C = r.N.transpose() * orthonormal(l.C);
   r.K = r.N.transpose() * orthonormal(l.K);
   if (!r.C.allFinite() || !r.K.allFinite())
-    throw SceneError(mechanism.scene().where({}) +
-                     "the linearised equations are not finite at the equilibrium");
+    throw SceneError(
+        mechanism.scene().where({}) +
+        "the linearised equations are not finite at the equilibrium, expected another");
   found.conservative = l.C.isZero(0) && has_potential(mechanism);
   if (found.conservative)
     self_adjoint(r, mechanism, at, found.modes);

@@ -101,7 +101,7 @@ Reduced reduce(const Mechanism& mechanism, const SteadyMotion& at) {
       D * r.kept / r.omega, G;
   if (!r.system.allFinite())
     throw SceneError(mechanism.scene().where({}) +
-                     "the linearised equations are not finite along the motion");
+                     "the linearised equations are not finite along the motion, expected another");
   return r;
 }
 

@@ -1,4 +1,5 @@
 #include <momenta/core/scene/kinds.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/pair_of_loop.h>
@@ -210,15 +211,15 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
       l.across2 = across * across;
       if (std::abs(across) > l.given)
         throw SceneError(scene.where(spec.at) + "loop '" + spec.name +
-                         "' cannot close: its points lie " + std::to_string(std::abs(across)) +
-                         " m apart across the plane, more than its length " +
-                         std::to_string(l.given) + " m");
+                         "' cannot close: its points lie " + reading::digits(std::abs(across)) +
+                         " m apart across the plane, expected at most its length, " +
+                         reading::digits(l.given) + " m");
     } else {
       const double size = 1 + point_a.norm() + point_b.norm();
       if (std::abs(across) > 1e-9 * size)
         throw SceneError(
             scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its two sides lie " +
-            std::to_string(std::abs(across)) +
+            reading::digits(std::abs(across)) +
             " m apart across the plane in which the scene moves; expected the same height");
       const bool translations =
           spec.kind == LoopKind::prismatic || (spec.kind == LoopKind::slot && !has_curves(spec));

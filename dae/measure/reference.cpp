@@ -1,3 +1,4 @@
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/measure/reference.h>
 #include <momenta/dae/text/csv_cells.h>
@@ -35,6 +36,7 @@ Reference::Kind kind_of(const std::string& column) {
 }  // namespace
 
 Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
+  reading::expect_plain_file(file, "reference solution in CSV");
   std::ifstream in(file);
   if (!in) throw SceneError(file_ + ": cannot be read; expected a reference solution in CSV");
   std::string line;
@@ -69,7 +71,8 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
         refuse("found '" + cell.substr(0, 40) + "'; expected a finite number");
       row.push_back(value);
     }
-    if (!times_.empty() && !(row.front() > times_.back())) refuse("time does not increase");
+    if (!times_.empty() && !(row.front() > times_.back()))
+      refuse("time does not increase; expected a later time than that of the line before");
     times_.push_back(row.front());
     row.erase(row.begin());
     values_.push_back(std::move(row));

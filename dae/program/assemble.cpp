@@ -1,6 +1,7 @@
 // `momenta assemble`: the start to which a scene's guess leads.
 
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/joint_places.h>
 
 #include <cstdio>
@@ -23,6 +24,8 @@ int assemble_verb(const Options& o) {
   j["moved"] = a.moved;
   j["branch"] = a.branch;
   j["residue"] = a.residue;
+  const std::string rates = replaced_rates_in_words(*mechanism, a.start);
+  j["rates"] = rates;
   j["iterations"] = a.iterations;
   j["mobility"] = a.mobility;
   const std::vector<JointPlace> places = joint_places(*mechanism);
@@ -45,7 +48,7 @@ int assemble_verb(const Options& o) {
       "guess\n",
       mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual,
       mechanism->scene().lagrangian ? "coordinates" : "joints", a.moved);
-  for (const std::string* more : {&a.branch, &a.residue})
+  for (const std::string* more : {&a.branch, &a.residue, &rates})
     if (!more->empty()) std::printf("  %s\n", more->c_str());
   for (const JointPlace& joint : places) {
     std::printf("  %-16s", joint.name.c_str());

@@ -3,6 +3,7 @@
 
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/rod_ends.h>
+#include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/study/passed_limits.h>
@@ -73,7 +74,9 @@ void print_counts(const Checked& c) {
     std::printf("  assembled with %s moved by at most %.3g from the guess%s%s\n",
                 c.bodies ? "joints" : "coordinates", c.assembly.moved,
                 c.assembly.branch.empty() ? "" : ": ", c.assembly.branch.c_str());
-  if (!c.assembly.residue.empty()) std::printf("  %s\n", c.assembly.residue.c_str());
+  const std::string rates = replaced_rates_in_words(c.mechanism, c.assembly.start);
+  for (const std::string* more : {&c.assembly.residue, &rates})
+    if (!more->empty()) std::printf("  %s\n", more->c_str());
 }
 
 void print_limits(const Checked& c) {

@@ -1,6 +1,7 @@
 // What `momenta check --json` prints.
 
 #include <momenta/core/operations.h>
+#include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
 
@@ -39,8 +40,10 @@ nlohmann::ordered_json check_json(const Checked& c) {
   j["mobility"] = c.assembly.mobility;
   j["nonholonomic_equations"] = count_nonholonomic(c.mechanism);
   j["free_positions"] = c.assembly.free_positions;
-  j["assembly"] = {
-      {"moved", c.assembly.moved}, {"branch", c.assembly.branch}, {"residue", c.assembly.residue}};
+  j["assembly"] = {{"moved", c.assembly.moved},
+                   {"branch", c.assembly.branch},
+                   {"residue", c.assembly.residue},
+                   {"rates", replaced_rates_in_words(c.mechanism, c.assembly.start)}};
   for (const auto& [what, how] : c.mechanism.plan_lines()) j["plan"][what] = how;
   if (c.bodies && c.mechanism.m() == 0) {
     const auto counted = [&](Recursion recursion) {

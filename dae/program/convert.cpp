@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "answers.h"
 #include "cut_words.h"
@@ -55,6 +56,15 @@ int convert(const Options& o, const ConvertOptions& c) {
     std::fputs(scene_text(scene).c_str(), stdout);
     return done;
   }
+  std::vector<std::filesystem::path> read = o.inputs;
+  read.insert(read.end(), scene.included.begin(), scene.included.end());
+  const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
+  for (const VisualSpec& visual : scene.visuals)
+    if (!visual.file.empty()) read.push_back(folder / visual.file);
+  if (is_read(c.out, read))
+    throw std::invalid_argument(c.out.string() +
+                                " is a file that the scene is read from, expected another to "
+                                "write the TOML to");
   find_meshes_from(c.out, scene);
   return write_results({{c.out, scene_text(scene)}}) ? done : run_failed;
 }

@@ -20,7 +20,9 @@ int drift(const Options& o, const DriftOptions& d) {
   for (const auto& form : request.forms) is_dae_form(form);  // unknown names before anything runs
   if (!o.integrator.empty() && integrator(o.integrator).takes != Integrator::Takes::ode)
     throw std::invalid_argument(
-        "--integrator chooses the method of the ODE forms; the DAE forms run on ida anyway");
+        "--integrator " + o.integrator +
+        ": is for DAE forms, which run on ida anyway; expected a method of ODE forms, " +
+        integrator_names(Integrator::Takes::ode));
   request.integrator = o.integrator;
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
   request.rtol = o.rtol;

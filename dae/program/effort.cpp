@@ -41,8 +41,7 @@ int effort(const Options& o, const EffortOptions& options) {
     request.motion.table = &*table;
     if (o.end || o.samples)
       throw std::invalid_argument(
-          "--end and --samples have no effect with --motion, whose times "
-          "are those of its file");
+          "--end and --samples have no effect with --motion, expected the times of its file alone");
   }
   request.motion.drives = driven.drives;
   request.motion.hold = names_in(options.hold);

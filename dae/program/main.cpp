@@ -2,7 +2,7 @@
 
 #include <momenta/core/kernel/levels/level.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/core/text/utf8.h>
 #include <momenta/dae/study/environment.h>
 
 #include <algorithm>
@@ -16,6 +16,8 @@
 
 #include "help.h"
 #include "loading.h"
+#include "results.h"
+#include "typed_wrong.h"
 #include "values.h"
 #include "verbs.h"
 
@@ -25,7 +27,8 @@ namespace {
 
 int answer(int argc, char** argv) {
   Options o;
-  for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
+  o.command = "momenta";
+  for (int i = 1; i < argc; ++i) o.command += " " + momenta::reading::as_utf8(argv[i]);
   CLI::App app(
       "Constrained multibody systems on canonical momenta: open chains, closed loops, "
       "and how far they drift.");
@@ -54,14 +57,7 @@ int answer(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty();
-    std::vector<std::string> known;
-    for (const CLI::App* verb : verbs_of(app)) known.push_back(verb->get_name());
-    if (unknown)
-      std::fprintf(stderr, "momenta: verb '%.60s' is not known; expected %s\n", argv[1],
-                   momenta::listed(known).c_str());
-    else
-      std::fprintf(stderr, "momenta: %s\n", e.what());
+    std::fprintf(stderr, "momenta: %s\n", typed_wrong(app, e, {argv + 1, argv + argc}).c_str());
     return bad_input;
   }
   for (const CLI::App* verb : app.get_subcommands()) {
@@ -69,6 +65,9 @@ int answer(int argc, char** argv) {
     for (const CLI::Option* option : verb->get_options()) {
       const std::string name = option->get_name();
       if (option->count() > 0 && name.starts_with("--")) o.given.push_back(name);
+      const Values::Paths paths = values_of(option->get_type_name()).paths;
+      if (name != "out" && (paths == Values::Paths::scenes || paths == Values::Paths::files))
+        for (const std::string& file : option->results()) o.inputs.emplace_back(file);
       if (option->count() == 0 || name == "scene" || name == "--reference" || name == "--out" ||
           name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads" ||
           name == "--task")
@@ -77,6 +76,7 @@ int answer(int argc, char** argv) {
     }
   }
   try {
+    expect_inputs_kept(o);
     if (!o.level.empty()) momenta::use_level(std::stoi(o.level));
     const auto asked =
         std::find_if(verbs.begin(), verbs.end(), [](const Verb& verb) { return bool(*verb.app); });
@@ -94,6 +94,9 @@ int answer(int argc, char** argv) {
     return run_failed;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "momenta: not enough memory for this scene\n");
+    return run_failed;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "momenta: %s\n", e.what());
     return run_failed;
   }
   return bad_input;

@@ -54,7 +54,7 @@ int make(const std::string& family, std::optional<int> n, bool turned) {
              : std::to_string(found->least) + " to " + std::to_string(found->most)));
   if (turned && found->print)
     throw std::invalid_argument("family '" + family + "' (" + found->what +
-                                "): found --turned, which is for planar mechanisms alone");
+                                "): found --turned, expected it of planar mechanisms alone");
   if (found->print)
     found->print(size);
   else

@@ -19,7 +19,8 @@ inline constexpr int done = 0, run_failed = 1, bad_input = 2;
 struct Options {
   std::string command;  ///< as typed
   std::string asked;    ///< the verb and its options, but for where and how results are told
-  std::vector<std::string> given;  ///< names of the options that were given
+  std::vector<std::string> given;             ///< names of the options that were given
+  std::vector<std::filesystem::path> inputs;  ///< files that they name to be read
   std::filesystem::path scene;
   ReadOptions reading;           ///< what a URDF does not say
   std::vector<std::string> set;  ///< numbers in place of the scene's: PLACE=NUMBER

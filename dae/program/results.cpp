@@ -1,6 +1,8 @@
 #include "results.h"
 
 #include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/text/utf8.h>
+#include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>
@@ -30,6 +32,10 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly) {
   study.scene = mechanism.scene().name;
   study.scene_file = o.scene.string();
+  study.reference = reading::as_utf8(study.reference);
+  if (const std::string rates = replaced_rates_in_words(mechanism, assembly.start);
+      !rates.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: %s: %s\n", o.scene.c_str(), rates.c_str());
   study.scene_hash = digest(content_of(o.scene));
   study.command = o.command;
   study.plan = mechanism.plan_lines();
@@ -54,6 +60,30 @@ int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t 
       mechanism.scene().bodies.size() > most_bodies_drawn)
     return 0;
   return film_intervals(picture_of(mechanism), runs);
+}
+
+bool is_read(const std::filesystem::path& file, const std::vector<std::filesystem::path>& read) {
+  return std::any_of(read.begin(), read.end(), [&](const std::filesystem::path& other) {
+    std::error_code none;
+    return std::filesystem::equivalent(file, other, none);
+  });
+}
+
+void expect_inputs_kept(const Options& o) {
+  if (o.out.empty()) return;
+  for (const char* name :
+       {"trajectory.csv", "run.h5",       "study.csv",       "summary.json",   "index.html",
+        "runs.jsonl",     "events.csv",   "stress.csv",      "stress.json",    "sweep.csv",
+        "sweep.json",     "curves.csv",   "modes.csv",       "statistics.csv", "modes.json",
+        "move.csv",       "move.json",    "effort.csv",      "effort.json",    "fit.csv",
+        "fit.json",       "fitted.toml",  "bench.csv",       "bench.json",     "linear.json",
+        "linear.m",       "linear.py",    "index.json",      "gradient.json",  "gradient.csv",
+        "section.csv",    "section.json", "checkpoint.json", "assemblies.csv", "assemblies.json",
+        "evaluate.json"})
+    if (is_read(o.out / name, o.inputs))
+      throw std::invalid_argument("--out " + o.out.string() + ": its " + name +
+                                  " is a file that this command reads, expected a directory "
+                                  "without it");
 }
 
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {

@@ -61,6 +61,12 @@ std::unique_ptr<Journal> keep_runs(const Options& o, const char* file = "runs.js
 int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal,
             std::vector<ResultFile> files = {});
 
+/// Whether a file to be written is one of these that are read, by whatever name.
+bool is_read(const std::filesystem::path& file, const std::vector<std::filesystem::path>& read);
+/// Refuses results that would be written over a file which the command reads.
+/// @throws std::invalid_argument
+void expect_inputs_kept(const Options& o);
+
 /// Refuses a directory that holds results of another verb than the one that writes `own`.
 /// @throws std::invalid_argument
 void expect_own_results(const std::filesystem::path& out, std::string_view own);

@@ -1,3 +1,4 @@
+#include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/csv.h>
@@ -235,7 +236,10 @@ int run(const Options& o) {
   else if (interrupted() && !finished(result))
     result.reason = "interrupted" + there;
   auto json = summary_json(result, study.environment);
-  json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}, {"residue", a.residue}};
+  json["assembly"] = {{"moved", a.moved},
+                      {"branch", a.branch},
+                      {"residue", a.residue},
+                      {"rates", replaced_rates_in_words(*mechanism, a.start)}};
   const std::string summary = json.dump(2) + "\n";
   std::vector<ResultFile> others;
   if (!o.out.empty()) others.push_back({o.out / "index.html", run_page(study)});

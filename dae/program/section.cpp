@@ -79,7 +79,8 @@ int section(const Options& o, const SectionOptions& s) {
   if (axes.empty()) {
     const auto q = mechanism.coordinate_columns(), u = mechanism.rate_columns();
     if (q.empty())
-      throw std::invalid_argument("the scene has no coordinate, so that no section is");
+      throw std::invalid_argument(
+          "the scene has no coordinate, so that no section is; expected one that moves");
     axes = {q.back().name, u.back().name};
   }
   if (axes.size() != 2)

@@ -53,7 +53,8 @@ int stress(const Options& o, const StressOptions& options) {
       });
     if (request.ladders.empty())
       throw std::invalid_argument("--along '" + options.along +
-                                  "': no built-in ladder has that in its name");
+                                  "': no built-in ladder has that in its name, expected a word of "
+                                  "one, as in a page of momenta stress");
   } else {
     Scene scene = read(o);
     if (scene.lagrangian)

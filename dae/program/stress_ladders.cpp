@@ -261,7 +261,8 @@ std::vector<Ladder> ladders_of(const Scene& scene, const std::vector<std::string
     if (!along.empty() && std::find(along.begin(), along.end(), name) == along.end()) continue;
     if (const std::string missing = lacks(scene, d.extreme); !missing.empty()) {
       if (!along.empty())
-        throw std::invalid_argument("--along " + name + ": the scene has " + missing);
+        throw std::invalid_argument("--along " + name + ": the scene has " + missing +
+                                    ", expected one that has");
       continue;
     }
     ladders.push_back(ladder_of(scene, d.extreme, d.factors));

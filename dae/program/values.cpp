@@ -1,5 +1,6 @@
 #include "values.h"
 
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integrators.h>
 
@@ -45,8 +46,13 @@ Values values_of(std::string type_name) {
 CLI::Option* one_of(CLI::Option* option, const std::vector<std::string>& words) {
   std::string type_name;
   for (const std::string& word : words) type_name += (type_name.empty() ? "" : "|") + word;
-  CLI::Validator member = CLI::IsMember(words);
-  return option->check(member.description(""))->type_name(type_name);
+  const auto check = [words](const std::string& text) -> std::string {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return {};
+    const std::vector<std::string_view> known(words.begin(), words.end());
+    return "found " + reading::in_quotes(text) + ", expected one of: " + listed(words) +
+           reading::did_you_mean(text, known);
+  };
+  return option->check(check)->type_name(type_name);
 }
 
 CLI::Option* positive(CLI::Option* option, const std::string& type_name) {
@@ -54,7 +60,8 @@ CLI::Option* positive(CLI::Option* option, const std::string& type_name) {
     double x = 0;
     const bool is_number = CLI::detail::lexical_cast(text, x);
     if (is_number && x > 0 && std::isfinite(x)) return {};
-    return "found " + (is_number ? text : "'" + text + "'") + ", expected a positive number";
+    return "found " + (is_number ? text : reading::in_quotes(text)) +
+           ", expected a positive number";
   };
   return option->check(check)->type_name(type_name);
 }

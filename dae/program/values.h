@@ -6,8 +6,11 @@
 //   SCENE      for a path: SCENE, FILE, DIR, STATE; else for what no list holds: S (seconds), N, X
 //   FORM,...   several, with commas between
 
+#include <momenta/core/text/near_name.h>
+
 #include <CLI/CLI.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace momenta::program {
@@ -29,7 +32,18 @@ CLI::Option* positive(CLI::Option* option, const std::string& type_name);
 /// The option takes a number from `least` to `most`, shown as `type_name`.
 template <class Number>
 CLI::Option* within(CLI::Option* option, const std::string& type_name, Number least, Number most) {
-  return option->check(CLI::Range(least, most).description(""))->type_name(type_name);
+  const auto check = [=](const std::string& text) -> std::string {
+    Number x{};
+    if (CLI::detail::lexical_cast(text, x) && least <= x && x <= most) return {};
+    const auto digits = [](Number n) {
+      if constexpr (std::is_integral_v<Number>) return std::to_string(n);
+      return reading::digits(static_cast<double>(n));
+    };
+    return "found " + reading::in_quotes(text) + ", expected a " +
+           (std::is_integral_v<Number> ? "whole number" : "number") + " from " + digits(least) +
+           " to " + digits(most);
+  };
+  return option->check(check)->type_name(type_name);
 }
 
 /// Verbs that users are told of, in the order they are listed.

@@ -149,10 +149,9 @@ Verb add_stress(CLI::App& app, Options& o) {
   positive(verb->add_option("--end", o.end, "End time of the scene [s]"), "S");
   positive(verb->add_option("--cpu-limit", o.cpu_limit, "CPU time of a run [s] (default: 20)"),
            "S");
-  verb->add_option("--reference-limit", own->reference_seconds,
-                   "CPU time of one reference in quadruple precision [s]; 0: none")
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->type_name("S")
+  within(verb->add_option("--reference-limit", own->reference_seconds,
+                          "CPU time of one reference in quadruple precision [s]; 0: none"),
+         "S", 0.0, 1e9)
       ->capture_default_str();
   within(verb->add_option("--threads", own->threads, "Default: one for each processor"), "N", 1,
          1024);

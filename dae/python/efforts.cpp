@@ -26,7 +26,7 @@ Reference table_of(const Mechanism& mechanism, const py::dict& motion) {
     const auto column = py::cast<Vector>(array);
     if (!column.allFinite())
       throw py::value_error("motion: " + reading::in_quotes(name) +
-                            " has a number that is not finite");
+                            " has a number that is not finite, expected finite ones");
     if (name == "t" || name == "t [s]") {
       t.assign(column.begin(), column.end());
       continue;
@@ -43,7 +43,8 @@ Reference table_of(const Mechanism& mechanism, const py::dict& motion) {
   }
   if (t.empty()) throw py::value_error("motion has no t; expected times [s]");
   for (std::size_t i = 1; i < t.size(); ++i)
-    if (!(t[i] > t[i - 1])) throw py::value_error("motion: t does not increase");
+    if (!(t[i] > t[i - 1]))
+      throw py::value_error("motion: t does not increase, expected a later time in each row");
   std::vector<std::vector<double>> rows(t.size());
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (values[k].size() != static_cast<Eigen::Index>(t.size()))

@@ -67,7 +67,8 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
       found = family.text(result.found);
     });
   } else if (sweep.empty()) {
-    if (!keep.empty()) throw py::value_error("fit: `keep` does not go with a measured motion");
+    if (!keep.empty())
+      throw py::value_error("fit: `keep` does not go with a measured motion, expected one of them");
     IdentificationRequest request;
     request.parameters = parameters;
     request.scene = scene;

@@ -1,3 +1,4 @@
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/integrators.h>
 
@@ -167,7 +168,10 @@ const Integrator& integrator(const std::string& name) {
     if (i.name == name) return i;
     names.push_back(i.name);
   }
-  throw std::invalid_argument("no integrator '" + name + "': expected " + listed(names));
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  throw std::invalid_argument("integrator " + reading::in_quotes(name) +
+                              " is not known; expected " + listed(names) +
+                              reading::did_you_mean(name, known));
 }
 
 std::string integrator_names(Takes takes) {

@@ -76,7 +76,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   }
   if (runs.empty())
     throw std::invalid_argument("integrator '" + explicit_method +
-                                "' takes none of the forms asked for");
+                                "' takes none of the forms asked for, expected one that does");
   return runs;
 }
 

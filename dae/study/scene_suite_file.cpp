@@ -73,7 +73,7 @@ std::vector<Setting> settings_in(const Fields& table) {
 void read_times(const Fields& t, SceneProblem& problem) {
   for (const char* key : {"end", "samples"})
     if (t.has(key) && !problem.reference.empty())
-      t.refuse(key, "stands beside a reference, which has the times");
+      t.refuse(key, "stands beside a reference, which has the times; expected one of them");
   if (t.has("end")) problem.end = t.number("end", {"s", Bound::positive});
   problem.samples = t.count("samples", problem.samples);
   if (problem.samples > most_samples)
@@ -89,7 +89,7 @@ void read_error(const Fields& t, SceneProblem& problem) {
     problem.error = BenchmarkError::Kind::threshold;
     problem.threshold = t.number("threshold", {"", Bound::positive}, problem.threshold);
   } else if (t.has("threshold")) {
-    t.refuse("threshold", "belongs to error = \"threshold\"");
+    t.refuse("threshold", "belongs to error = \"threshold\", expected both or neither");
   }
   problem.columns = t.texts("columns");
   problem.allowed = between(t, "allowed", {}, 1);

@@ -41,8 +41,11 @@ Source source_of(const std::string& state) {
   if (state == "-") return {"standard input", all_of(std::cin, "standard input")};
   const std::string name = reading::on_one_line(state);
   std::error_code trouble;
-  if (std::filesystem::is_directory(state, trouble))
+  const auto status = std::filesystem::status(state, trouble);
+  if (std::filesystem::is_directory(status))
     throw SceneError(name + ": found a directory, expected a JSON file with a state");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw SceneError(name + ": found a pipe or a device, expected a JSON file with a state, or -");
   std::ifstream in(state, std::ios::binary);
   if (!in)
     throw SceneError(name +
@@ -73,7 +76,7 @@ StateText::StateText(const std::string& state, std::span<const std::string_view>
   for (const auto& [key, value] : json_.items())
     if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) {
       std::string which = reading::did_you_mean(key, keys_);
-      if (which.empty()) which = "; expected " + listed();
+      which = "; expected " + listed() + which;
       fail("key " + reading::in_quotes(key) + " is not known" + which);
     }
 }
@@ -146,7 +149,7 @@ void StateText::unknown_joint(const std::string& name, const std::string& key,
                               std::span<const std::string_view> names,
                               const std::string& word) const {
   std::string which = reading::did_you_mean(name, names);
-  if (which.empty()) which = "; expected a " + word + " of the scene";
+  which = "; expected a " + word + " of the scene" + which;
   fail("key '" + key + "': " + word + " " + reading::in_quotes(name) + " is not in the scene" +
        which);
 }

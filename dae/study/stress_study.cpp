@@ -214,7 +214,8 @@ StressResult run_stress_study(const StressRequest& request) {
     const Integrator& method = integrator(c.integrator);
     const bool dae = is_dae_form(c.form);
     if (!method.takes_form(c.form, dae) || (method.multistep && needs_one_step_method(c.form)))
-      throw std::invalid_argument("form '" + c.form + "' does not run on '" + c.integrator + "'");
+      throw std::invalid_argument("form '" + c.form + "' does not run on '" + c.integrator +
+                                  "', expected another integrator");
     result.contestants.push_back(std::move(c));
   }
   const std::size_t contestants = result.contestants.size();

@@ -83,7 +83,7 @@ class VariedText {
     const double from = number(range[0]), to = number(range[1]);
     if (log && !(from > 0 && to > 0))
       throw std::invalid_argument("--vary '" + text_ +
-                                  "': a logarithmic range needs both ends above zero");
+                                  "': a logarithmic range, expected both ends above zero");
     if (range.size() == 3) return {Kind::choice, 0, 0, spaced(from, to, range[2], log)};
     return {log ? Kind::log_uniform : Kind::uniform, from, to, {}};
   }

@@ -117,10 +117,10 @@ TEST_F(KnownElements, OfSdf) {
             Remarks{});
   EXPECT_EQ(
       sdf("<velocity_decay><linear>1</linear></velocity_decay>",
-          "<limit><lower>-1</lower><uper>1</uper><stiffness>1e4</stiffness></limit>",
+          "<limit><lower>-1</lower><unheard>1</unheard><stiffness>1e4</stiffness></limit>",
           "<gripper name='g'/>"),
       (Remarks{"left out: <gripper> of <model> (1)", "left out: <velocity_decay> of <link> (1)",
-               "left out: <uper> of <limit> (1)", "left out: <stiffness> of <limit> (1)"}));
+               "left out: <unheard> of <limit> (1)", "left out: <stiffness> of <limit> (1)"}));
 }
 
 // --- what readers take that was told or dropped before ---
@@ -138,10 +138,48 @@ TEST_F(KnownElements, FlagsAndAutolimits) {
   EXPECT_TRUE(joint(keys + " limited='true'", "<compiler autolimits='false'/>").limits);
   EXPECT_FALSE(joint(keys, "<option><flag limit='disable'/></option>").limits);
   EXPECT_EQ(joint(keys, "<option><flag frictionloss='disable'/></option>").friction, 0);
-  EXPECT_NE(refused("c.xml",
-                    "<mujoco><option><flag constraint='disable'/></option><worldbody>"
-                    "<body><joint/><geom size='1'/></body></worldbody></mujoco>")
-                .find("constraint is not enable"),
+  // What all constraints are is left out by one flag.
+  const JointSpec free = joint(keys, "<option><flag constraint='disable'/></option>");
+  EXPECT_FALSE(free.limits);
+  EXPECT_EQ(free.friction, 0);
+}
+
+// What a flag turns off does not act: loops, springs, dampers, and what takes weights back.
+TEST_F(KnownElements, FlagsTurnOffWhatTheySay) {
+  const auto model = [&](const std::string& flags) {
+    return read("f.xml", "<mujoco><option><flag " + flags +
+                             "/></option><worldbody><body name='a'><joint name='h' stiffness='2' "
+                             "damping='3'/><joint type='slide' axis='1 0 0' springdamper='.1 1'/>"
+                             "<geom size='1'/></body><body gravcomp='1'><joint type='ball' "
+                             "damping='1'/><geom size='1'/></body></worldbody><tendon><fixed "
+                             "stiffness='1' damping='4'><joint joint='h' coef='1'/></fixed>"
+                             "</tendon><equality><connect body1='a' anchor='1 0 0'/></equality>"
+                             "</mujoco>");
+  };
+  const Scene whole = model("");
+  EXPECT_EQ(whole.loops.size(), 1U);
+  EXPECT_EQ(whole.forces.size(), 3U);
+  EXPECT_EQ(model("equality='disable'").loops.size(), 0U);
+  EXPECT_EQ(model("constraint='disable'").loops.size(), 0U);
+  EXPECT_EQ(model("constraint='disable'").forces.size(), 3U);
+  const Scene no_springs = model("spring='disable'"), no_dampers = model("damper='disable'");
+  EXPECT_EQ(no_springs.joints[0].stiffness, 0);
+  EXPECT_EQ(no_springs.joints[0].damping, 3);
+  EXPECT_EQ(no_springs.joints[1].stiffness, 0);
+  EXPECT_GT(no_springs.joints[1].damping, 0);
+  EXPECT_EQ(no_dampers.joints[0].stiffness, 2);
+  EXPECT_EQ(no_dampers.joints[0].damping, 0);
+  EXPECT_EQ(no_dampers.forces.size(), 2U);
+  EXPECT_TRUE(model("passive='disable'").forces.empty());
+}
+
+// What a format has elsewhere, or others put into its files, is no misspelling.
+TEST_F(KnownElements, WhatIsNearToNothingGoesThrough) {
+  EXPECT_EQ(urdf("<sensor name='s'/>", "", "<ros2_control name='c'/><limb/><drake:lnik/>").size(),
+            4U);
+  EXPECT_EQ(urdf("<visual><geometri/><meterial/></visual>").size(), 3U);
+  EXPECT_NE(refused("s.sdf", "<sdf version='1.9'><model name='m'><lnik name='a'/></model></sdf>")
+                .find("did you mean 'link'?"),
             std::string::npos);
 }
 

@@ -222,10 +222,29 @@ TEST_F(MjcfMeshes, TorusConverges) {
   }
 }
 
-// A solid with a dent: its own inside and its hull, which is what is taken and said.
-TEST_F(MjcfMeshes, HullsOfDentedMeshesAreSaid) {
+// A prism over an L of three unit squares, seen whole from its middle: 3 m³, and 3.5 m³ in its
+// hull.
+TEST_F(MjcfMeshes, TheDefaultIsThatOfMujoco) {
+  const auto mass = [&](const std::string& inertia) {
+    return body(
+               "<mesh name='m' vertex='0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0 0 0 1 2 0 1 2 1 1 1 1 "
+               "1 1 2 1 0 2 1' face='0 3 1 1 3 2 0 4 3 0 5 4 6 7 9 7 8 9 6 9 10 6 10 11 0 1 7 0 7 "
+               "6 1 2 8 1 8 7 2 3 9 2 9 8 3 4 10 3 10 9 4 5 11 4 11 10 5 0 6 5 6 11'" +
+                   inertia + "/>",
+               "<geom type='mesh' mesh='m' density='1000'/>")
+        .mass;
+  };
+  EXPECT_NEAR(mass(""), 3000, 1e-9);
+  EXPECT_NEAR(mass(" inertia='legacy'"), 3000, 1e-9);
+  EXPECT_NEAR(mass(" inertia='exact'"), 3000, 1e-9);
+  EXPECT_NEAR(mass(" inertia='convex'"), 3500, 1e-9);
+  EXPECT_NEAR(mass(" inertia='shell'"), 14000, 1e-9);
+}
+
+// A solid with a deep dent: its own inside, its hull, and pyramids, which overlap; that is said.
+TEST_F(MjcfMeshes, PyramidsThatOverlapAreSaid) {
   Mesh mesh = box(1, 1, 1);
-  mesh.points.emplace_back(0, 0, 0.5);  // in place of the middle of the upper side
+  mesh.points.emplace_back(0, 0, -0.5);  // in place of the middle of the upper side
   mesh.triangles[2] = {4, 5, 8};
   mesh.triangles[3] = {5, 7, 8};
   mesh.triangles.push_back({7, 6, 8});
@@ -236,16 +255,19 @@ TEST_F(MjcfMeshes, HullsOfDentedMeshesAreSaid) {
     return mjcf("<compiler " + compiler + "/><asset><mesh file='dent.obj'" + inertia +
                 "/></asset><worldbody><body><joint/>" + geom + "</body></worldbody>");
   };
-  EXPECT_NEAR(model("").bodies[0].mass, 8, 1e-14);
-  EXPECT_NEAR(model(" inertia='exact'").bodies[0].mass, 8 - 2. / 3, 1e-14);
-  EXPECT_NEAR(model("", "exactmeshinertia='true'").bodies[0].mass, 8 - 2. / 3, 1e-14);
+  EXPECT_NEAR(model(" inertia='convex'").bodies[0].mass, 8, 1e-14);
+  EXPECT_NEAR(model(" inertia='exact'").bodies[0].mass, 6, 1e-14);
+  EXPECT_NEAR(model("", "exactmeshinertia='true'").bodies[0].mass, 6, 1e-14);
+  EXPECT_GT(model("").bodies[0].mass, 6.1);
   const auto said = [](const Scene& scene) {
     int count = 0;
-    for (const std::string& remark : scene.remarks) count += remark.starts_with("weighed by their");
+    for (const std::string& remark : scene.remarks)
+      count += remark.starts_with("weighed by pyramids");
     return count;
   };
   EXPECT_EQ(said(model("")), 1);
   EXPECT_EQ(said(model(" inertia='exact'")), 0);
+  EXPECT_EQ(said(model(" inertia='convex'")), 0);
 }
 
 // Shells of geoms: slices of the surface of a body of revolution, ρ(z) its radius.
@@ -307,8 +329,8 @@ TEST_F(MjcfMeshes, WrongMeshes) {
   for (Vector3d& p : mesh.points) p[2] = 0;
   refused(file("flat.obj", obj(mesh)), "which has no volume, expected a solid");
   write("flat2.obj", obj(mesh));
-  refused("<mesh name='m' file='flat2.obj'/>", "has no convex hull with a volume");
-  refused("<mesh name='m' file='flat2.obj' inertia='legacy'/>", "has no volume");
+  refused("<mesh name='m' file='flat2.obj' inertia='convex'/>", "has no convex hull with a volume");
+  refused("<mesh name='m' file='flat2.obj'/>", "has no volume");
   std::string bytes = stl(whole);
   refused(file("short.stl", bytes.substr(0, 500)),
           ": mesh 'm': <mesh> file cannot be read: " + (folder / "short.stl").string() +

@@ -284,5 +284,55 @@ TEST_F(Robots, MjcfOptionsEqualityAndRemarks) {
                                       "left out: equality constraints that are not active (1)"}));
 }
 
+// A link called ground below a root of another name is a body as any, under another name.
+TEST_F(Robots, LinksMayBeCalledGround) {
+  const std::string tree = "<link name='world'/>" + link("ground") + link("a") +
+                           between("w", "fixed", "world", "ground") +
+                           between("j", "continuous", "ground", "a") +
+                           "<gazebo reference='ground'><turnGravityOff value='true'/></gazebo>";
+  const Scene scene = urdf(tree);
+  EXPECT_EQ(body(scene, "ground 2").mass, 2);
+  EXPECT_EQ(joint(scene, "j").parent, "ground 2");
+  EXPECT_EQ(joint(scene, "root").parent, "ground");
+  ASSERT_EQ(scene.forces.size(), 1U);
+  EXPECT_EQ(scene.forces[0].body, "ground 2");
+  ReadOptions free;
+  free.free_root = true;
+  const Scene floats =
+      urdf(link("ground") + link("a") + between("j", "continuous", "ground", "a"), free);
+  EXPECT_EQ(joint(floats, "root").child, "ground 2");
+  // The root that is welded is the ground itself.
+  EXPECT_EQ(
+      urdf(link("ground") + link("a") + between("j", "continuous", "ground", "a")).bodies.size(),
+      1U);
+  const Scene sdf = read(
+      "g.sdf",
+      "<sdf version='1.7'><model name='m'><link name='ground'/><link name='a'/><joint name='w' "
+      "type='fixed'><parent>world</parent><child>ground</child></joint><joint name='j' "
+      "type='revolute'><parent>ground</parent><child>a</child><axis><xyz>0 1 0</xyz></axis></joint>"
+      "</model></sdf>");
+  EXPECT_EQ(joint(sdf, "j").parent, "ground 2");
+  EXPECT_EQ(joint(sdf, "w").parent, "ground");
+  const Scene mj = mjcf(
+      "<body name='ground'><joint name='k'/><geom size='1'/></body></worldbody>"
+      "<equality><connect body1='ground' anchor='1 0 0'/></equality><worldbody>");
+  EXPECT_EQ(joint(mj, "k").child, "ground 2");
+  EXPECT_EQ(mj.loops.at(0).child, "ground 2");
+}
+
+// What does not move mimics nothing; and is 0 to what mimics it.
+TEST_F(Robots, MimicOfFixedJoints) {
+  const std::string before = link("base") + link("a") + link("b");
+  const Scene of_fixed = urdf(before + between("j", "continuous", "base", "a") +
+                              between("k", "fixed", "a", "b", "<mimic joint='j' multiplier='2'/>"));
+  EXPECT_TRUE(of_fixed.loops.empty());
+  const Scene by_fixed =
+      urdf(before + between("j", "fixed", "base", "a") +
+           between("k", "continuous", "a", "b", "<mimic joint='j' multiplier='2' offset='0.3'/>"));
+  ASSERT_EQ(by_fixed.loops.size(), 1U);
+  EXPECT_EQ(by_fixed.loops[0].joints, std::vector<std::string>{"k"});
+  EXPECT_EQ(by_fixed.loops[0].offset, 0.3);
+}
+
 }  // namespace
 }  // namespace momenta::core_robots

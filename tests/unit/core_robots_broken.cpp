@@ -92,16 +92,16 @@ const Case wrong_urdf[] = {
      "<parent link='a'/><child link='c'/></joint>\n<joint name='k' type='fixed'><parent link='a'/>"
      "<child link='b'/></joint>\n<joint name='l' type='fixed'><parent link='b'/><child "
      "link='c'/></joint></robot>",
-     ":4: body 'c' is the child of joints 'j' and 'l', expected exactly one"},
+     ":4: link 'c' is the child of joints 'j' and 'l', expected exactly one; a loop is a <loop>"},
     {"two_roots", "<robot>\n<link name='a'/><link name='b'/></robot>",
      ":1: <robot> has two links that are no joint's child, 'a' and 'b', expected one root"},
     {"cycle",
      "<robot><link name='a'/><link name='b'/>\n<joint name='j' type='fixed'><parent link='a'/>"
      "<child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child "
      "link='a'/></joint></robot>",
-     "form a cycle"},
+     "joints 'j', 'k' form a cycle, b <- a <- b, expected a tree"},
     {"link_twice", "<robot><link name='a'/>\n<link name='a'/></robot>",
-     ":2: body 'a': the name is taken since line 1"},
+     ":2: link 'a': <link> is the second of that name, expected each name once"},
     {"mass",
      "<robot><link name='a'><inertial>\n<mass value='1 kg'/><inertia ixx='1' iyy='1' "
      "izz='1'/></inertial></link></robot>",
@@ -131,7 +131,7 @@ const Case wrong_urdf[] = {
     {"mimic",
      "<robot><link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent link='a'/>"
      "<child link='b'/>\n<mimic joint='k'/></joint></robot>",
-     ":3: loop 'j mimic': 'k' is no joint"},
+     ":3: joint 'j': <mimic> joint is 'k', expected the name of a joint"},
     {"loop_link",
      "<robot><link name='a'/>\n<loop name='l' type='revolute'><predecessor link='a'/>\n<successor "
      "link='b'/></loop></robot>",
@@ -144,6 +144,23 @@ const Case wrong_urdf[] = {
      "<robot><link name='a'/>\n<coupling name='c'><predecessor link='a'/><successor link='a'/>"
      "<ratio value='2'/></coupling></robot>",
      ":2: coupling 'c': <coupling> couples no joint"},
+    {"misspelt",
+     "<robot><link name='a'/><link name='b'/>\n<jiont name='j' type='fixed'><parent link='a'/>"
+     "<child link='b'/></jiont></robot>",
+     ":2: <jiont> is not known in <robot>, expected an element of the format; did you mean "
+     "'joint'?"},
+    {"misspelt_limit",
+     "<robot><link name='a'/><link name='b'/><joint name='j' type='revolute'><parent link='a'/>"
+     "<child link='b'/>\n<limits lower='-1' upper='1'/></joint></robot>",
+     ":2: <limits> is not known in <joint>, expected an element of the format; did you mean "
+     "'limit'?"},
+    {"not_utf8",
+     "<?xml version='1.0' encoding='ISO-8859-1'?>\n<robot>\n<link name='lev\xe9'/></robot>",
+     ":3: 'lev\\xe9' is not in UTF-8 (the file declares ISO-8859-1), expected UTF-8"},
+    {"mimic_itself",
+     "<robot><link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent link='a'/>"
+     "<child link='b'/>\n<mimic joint='j'/></joint></robot>",
+     ":3: joint 'j': <mimic> joint is the joint itself, expected another one"},
     {"macro", "<robot><link name='a'/>\n<xacro:include filename='x'/></robot>",
      ":2: <xacro:include> is for xacro, expected a URDF: expand the file by"},
 };
@@ -211,8 +228,25 @@ const Case wrong_mjcf[] = {
      "<mujoco><worldbody><body name='b'><joint name='j'/><joint name='k'/></body></worldbody>"
      "<equality>\n<joint joint1='j' joint2='k' polycoef='0 1 2 0 0 1'/></equality></mujoco>",
      ":2: equality: <joint> polycoef has 6 numbers, expected 5"},
-    {"flag", "<mujoco><option>\n<flag equality='disable'/></option></mujoco>",
-     ":2: <flag> equality is not enable"},
+    {"flag", "<mujoco><option>\n<flag equality='disabled'/></option></mujoco>",
+     ":2: <flag> equality is 'disabled', expected one of: enable, disable; did you mean "
+     "'disable'?"},
+    {"misspelt_section", "<mujoco><worldbody/>\n<equalitty/></mujoco>",
+     ":2: <equalitty> is not known in <mujoco>, expected an element of the format; did you mean "
+     "'equality'?"},
+    {"misspelt_joint",
+     "<mujoco><worldbody><body name='a'><joint/><geom size='1'/><body name='b'>\n<jiont/><geom "
+     "size='1'/></body></body></worldbody></mujoco>",
+     ":2: <jiont> is not known in <body>, expected an element of the format; did you mean "
+     "'joint'?"},
+    {"misspelt_in_frame",
+     "<mujoco><worldbody><frame>\n<boddy name='a'/></frame></worldbody></mujoco>",
+     ":2: <boddy> is not known in <frame>"},
+    {"not_utf8", "<mujoco><worldbody>\n<body name='lev\xe9'/></worldbody></mujoco>",
+     ":2: 'lev\\xe9' is not in UTF-8, expected UTF-8"},
+    {"surrogate", "<mujoco><worldbody>\n<body name='&#xd800;'/></worldbody></mujoco>",
+     ":2: '\\xed\\xa0\\x80' is not in UTF-8"},
+    {"utf16", "\xff\xfe<mujoco/>", ":1: holds NUL or the mark of UTF-16, expected text in UTF-8"},
 };
 
 TEST_F(Files, WrongUrdf) {

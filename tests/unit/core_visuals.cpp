@@ -74,5 +74,58 @@ TEST(Visuals, OfLinks) {
   EXPECT_EQ(*v.colour, Vector3d(0, 1, 0));
 }
 
+// What is wrong in pictures alone is told, and refuses no mechanism.
+TEST(Visuals, WhatIsWrongInThemIsToldAlone) {
+  const auto told = [](const Scene& scene) {
+    int count = 0;
+    for (const std::string& remark : scene.remarks) count += remark.starts_with("not drawn: ");
+    return count;
+  };
+  const std::string link =
+      "<robot name='r'><link name='base'/><link name='a'><inertial><mass value='1'/><inertia "
+      "ixx='1' iyy='1' izz='1'/></inertial>";
+  const std::string joint =
+      "</link><joint name='j' type='continuous'><parent link='base'/><child link='a'/></joint>"
+      "</robot>";
+  for (const std::string wrong :
+       {"<geometry><mesh filename='none.stl' scale='1 1 1 1'/></geometry>",
+        "<geometry><sphere/></geometry>", "<geometry><box size='1 x 2'/></geometry>",
+        "<origin rpy='0 0'/><geometry><sphere radius='1'/></geometry>",
+        "<geometry><mesh/></geometry>"}) {
+    const Scene scene = read(".urdf", link + "<visual>" + wrong + "</visual>" + joint);
+    EXPECT_EQ(told(scene), 1) << wrong;
+    EXPECT_TRUE(scene.visuals.empty()) << wrong;
+  }
+  EXPECT_EQ(told(read(".urdf", link +
+                                   "<visual><material name='m'><color rgba='1 1'/></material>"
+                                   "</visual>" +
+                                   joint)),
+            1);
+  const auto sdf = [](const std::string& visual) {
+    return read(".sdf", "<sdf version='1.9'><model name='m'><link name='a'><visual name='v'>" +
+                            visual + "</visual></link></model></sdf>");
+  };
+  const std::string box = "<geometry><box><size>1 1 1</size></box></geometry>";
+  EXPECT_EQ(told(sdf("<geometry><sphere><size>1</size></sphere></geometry>")), 1);
+  EXPECT_EQ(told(sdf(box + "<material><diffuse>1 0</diffuse></material>")), 1);
+  const Scene short_form = sdf(box + "<material><diffuse>1 0 0</diffuse></material>");
+  EXPECT_EQ(told(short_form), 0);
+  EXPECT_EQ(*short_form.visuals.at(0).colour, Vector3d(1, 0, 0));
+  const auto mjcf = [](const std::string& geom, const std::string& asset = "") {
+    return read(".xml", "<mujoco><asset>" + asset +
+                            "</asset><worldbody><body><joint/><inertial mass='1' pos='0 0 0' "
+                            "diaginertia='1 1 1'/><geom " +
+                            geom + "/></body></worldbody></mujoco>");
+  };
+  for (const std::string wrong :
+       {"type='sphare' size='1'", "size='-1'", "type='box' size='1'", "size='1' rgba='1 2'"})
+    EXPECT_EQ(told(mjcf(wrong)), 1) << wrong;
+  EXPECT_EQ(told(mjcf("size='1' material='m'", "<material name='m' rgba='1'/>")), 1);
+  // No value is as not given.
+  const Scene empty = mjcf("size='1' rgba='' quat='' name=''");
+  EXPECT_EQ(told(empty), 0);
+  EXPECT_EQ(empty.visuals.size(), 1U);
+}
+
 }  // namespace
 }  // namespace momenta::core_visuals

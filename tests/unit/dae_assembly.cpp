@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/kkt/loop_rank.h>
 
 #include <Eigen/SVD>
@@ -488,6 +489,40 @@ TEST(Assembly, UnitsDoNotMatter) {
     EXPECT_NEAR(b.start.u[2] / s * 0.1, a.start.u[2], 1e-11) << s;
     EXPECT_LT(b.position_residual, 1e-12 * s) << s;
   }
+}
+
+// Rates of a scene that its loops do not let be are replaced by the nearest, and that is told: of
+// two joints with u_A = 2 u_B by (2, 1) (2 u_A + u_B)/5; of a point on a circle along its tangent.
+TEST(Assembly, ReplacedRatesAreTold) {
+  const auto told = [](const std::string& text) {
+    const Mechanism mechanism(parse_scene(text, "s.toml"));
+    return replaced_rates_in_words(mechanism, assemble(mechanism).start);
+  };
+  const auto geared = [&](const std::string& a, const std::string& b,
+                          const std::string& more = "") {
+    const std::string body = "[[body]]\nmass = 1\nshape = { kind = 'rod', length = 1 }\nname = ";
+    const std::string joint = "\n[[joint]]\nkind = 'revolute'\n";
+    return told(body + "'a'\n" + body + "'b'" + joint + "name = 'A'\nchild = 'a'\nvelocity = " + a +
+                joint + "name = 'B'\nchild = 'b'\nvelocity = " + b +
+                "\n[[loop]]\nname = 'C'\nkind = 'coupler'\njoints = ['A', 'B']\n"
+                "ratios = [1, -2]\n" +
+                more);
+  };
+  EXPECT_EQ(
+      geared("1", "1"),
+      "start rates replaced by the nearest that the loops allow: A.u from 1 to 1.2 rad/s, B.u "
+      "from 1 to 0.6 rad/s");
+  EXPECT_EQ(geared("1", "0"),
+            "start rates replaced by the nearest that the loops allow: A.u from 1 to 0.8 rad/s");
+  EXPECT_EQ(geared("1", "1", "[assembly]\nhold = ['A']\n"),
+            "start rates replaced by the nearest that the loops allow: B.u from 1 to 0.5 rad/s");
+  EXPECT_EQ(geared("2", "1"), "");
+  EXPECT_EQ(geared("0", "0"), "");
+  EXPECT_EQ(told("[lagrangian]\ncoordinates = ['x', 'y']\nposition = [0.6, -0.8]\nvelocity = [1, "
+                 "1]\nkinetic = '0.5*(x.dot^2+y.dot^2)'\npotential = 'y'\n"
+                 "constraints = [{ name = 'rod', equation = 'x^2+y^2-1' }]\n"),
+            "start rates replaced by the nearest that the constraints allow: x.dot from 1 to 1.12 "
+            "1/s, y.dot from 1 to 0.84 1/s");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Scene read_any(const std::filesystem::path& file, const ReadOptions& options,
     try {
       return parse_robot(text, name, options);
     } catch (const std::bad_alloc&) {
-      reading::fail(name, {}, "the scene does not fit into memory");
+      reading::fail(name, {}, "the scene does not fit into memory, expected a smaller one");
     }
   }
   expect_own_options(name, options, false, false);

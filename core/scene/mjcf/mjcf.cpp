@@ -8,6 +8,7 @@
 #include <momenta/core/scene/xml/known_elements.h>
 #include <momenta/core/text/near_name.h>
 
+#include <array>
 #include <map>
 
 namespace momenta::reading {
@@ -19,15 +20,17 @@ void read_option(const Node& node, MjcfModel& model) {
     if (node.number(key, 0) != 0) model.remarks.left_out("forces of a fluid");
   model.disabled_groups |= !node.text("actuatorgroupdisable", "").empty();
   for (const Node& flag : node.children("flag")) {
-    const auto off = [&](const char* key) { return flag.text(key, "enable") == "disable"; };
+    constexpr std::array<std::string_view, 2> words{"enable", "disable"};
+    const auto off = [&](const char* key) { return flag.word(key, words, 0) == 1; };
+    const bool free = off("constraint"), passive = off("passive");
     if (off("gravity")) model.scene.gravity.setZero();
-    model.rubs &= !off("frictionloss");
-    model.limits &= !off("limit");
+    model.rubs &= !free && !off("frictionloss");
+    model.limits &= !free && !off("limit");
+    model.ties &= !free && !off("equality");
+    model.springs &= !passive && !off("spring");
+    model.dampers &= !passive && !off("damper");
     model.clamps &= !off("clampctrl");
     model.actuates &= !off("actuation");
-    for (const char* key : {"constraint", "equality", "passive", "spring", "damper"})
-      if (flag.text(key, "enable") != "enable")
-        flag.fail(key, "is not enable, expected what the model holds to act");
   }
 }
 
@@ -81,6 +84,7 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
   MjcfFiles files(file);
   const Element whole = assembled(element, file, files, model.remarks);
   const Node root(whole, "", file);
+  refuse_misspelt(root, mjcf_elements());
   model.scene.file = file;
   model.folder = files.folder();
   model.scene.included = files.names();

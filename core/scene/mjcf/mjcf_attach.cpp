@@ -266,9 +266,19 @@ class Assembler {
 Element assembled(const Element& model, const std::string& file, MjcfFiles& files,
                   Remarks& remarks) {
   std::error_code error;
-  Element whole =
-      Assembler(files, remarks).assemble(model, file, {fs::weakly_canonical(file, error)});
+  Element whole = model;
+  files.drop_empty(whole);
+  whole = Assembler(files, remarks)
+              .assemble(std::move(whole), file, {fs::weakly_canonical(file, error)});
   refuse_depth(Node(whole, "", file), 1);
+  for (int i = 0; i < files.empty(); ++i) remarks.count("taken as not given: empty attributes");
+  bool shared = false;
+  rename(whole, "", "", " 2", [&](const std::string& kind, const std::string& name) {
+    const bool same = kind == "body" && name == "ground";
+    shared |= same;
+    return same;
+  });
+  if (shared) remarks.say("called 'ground 2', as ground is what does not move: body 'ground'");
   return whole;
 }
 

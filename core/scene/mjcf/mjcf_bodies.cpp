@@ -69,8 +69,7 @@ class BodyReader {
     const std::string name =
         named ? node.text("name") : model_.bodies.free("body" + std::to_string(count_));
     const Node self = node.of("body " + in_quotes(name));
-    if (name == "world" || name == "ground")
-      self.fail("has a name that is reserved, expected another");
+    if (name == "world") self.fail("has the name of the ground, expected another");
     if (named) model_.bodies.take(name);
 
     Place inside{name, {}, model_.defaults.active_class(self, part.active), place.moves};
@@ -91,7 +90,8 @@ class BodyReader {
     weigh_body(spec, self, parts, frame, inside);
     hang(self, joints, frame, place, inside);
     model_.scene.bodies.push_back(spec);
-    if (const double lifted = self.number("gravcomp", 0); lifted != 0 && inside.moves)
+    const double lifted = self.number("gravcomp", 0);
+    if (lifted != 0 && inside.moves && (model_.springs || model_.dampers))
       take_back_weight(name, spec.com, lifted * spec.mass, self.at(), model_.scene);
     if (self.flag("mocap", false)) model_.remarks.count("left at rest: bodies of motion capture");
     children_of(parts, inside);

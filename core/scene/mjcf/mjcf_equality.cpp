@@ -24,7 +24,7 @@ class EqualityReader {
   EqualityReader(const Node& node, MjcfModel& model) : node_(node), model_(model) {}
 
   void read() {
-    if (!node_.flag("active", true))
+    if (!node_.flag("active", true) || !model_.ties)
       return model_.remarks.left_out("equality constraints that are not active");
     loop_.at = node_.at();
     loop_.name = model_.edges.free(node_.text("name", node_.name() + " equality"));

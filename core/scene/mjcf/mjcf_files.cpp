@@ -92,6 +92,7 @@ Element MjcfFiles::read(const Node& node, const std::filesystem::path& file) {
   const std::string name = (written_ / file.lexically_relative(folder_)).string();
   names_.push_back(name);
   Element root = parse_xml(text_of(file), name);
+  drop_empty(root);
   grow(node, root, 1);
   mark(root, std::make_shared<IncludedFile>(IncludedFile{name, static_cast<int>(names_.size())}));
   return root;
@@ -104,6 +105,13 @@ void MjcfFiles::grow(const Node& node, const Element& element, std::size_t count
   if (elements_ > most_elements || bytes_ > largest_text)
     node.fail("takes the model over " + std::to_string(most_elements) +
               " elements or 64 MiB, expected less");
+}
+
+void MjcfFiles::drop_empty(Element& element) {
+  empty_ += static_cast<int>(std::erase_if(element.attributes, [](const Attribute& a) {
+    return a.text.find_first_not_of(" \t\r\n") == std::string::npos;
+  }));
+  for (Element& child : element.children) drop_empty(child);
 }
 
 Element with_includes(Element model, const std::string& file, MjcfFiles& files) {

@@ -27,6 +27,10 @@ class MjcfFiles {
   Element read(const Node& node, const std::filesystem::path& file);
   /// Takes note of `count` copies of an element. @throws SceneError beyond most_elements or 64 MiB
   void grow(const Node& node, const Element& element, std::size_t count);
+  /// Drops attributes without a value, which MuJoCo takes as not given, from an element and all in
+  /// it; empty() counts them.
+  void drop_empty(Element& element);
+  int empty() const { return empty_; }
   /// Of the files read so far, for Scene::included.
   const std::vector<std::string>& names() const { return names_; }
 
@@ -34,6 +38,7 @@ class MjcfFiles {
   std::filesystem::path folder_, written_;  ///< the folder, and as the model's name has it
   std::vector<std::string> names_;
   std::size_t elements_ = 0, bytes_ = 0;
+  int empty_ = 0;
 };
 
 /// The model with the elements of other files in the place of each <include>. As in MuJoCo a file

@@ -73,7 +73,8 @@ void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
   if (rest != 0) model.rests[joint.name] = rest;
   read_limits(node, unit, ref, joint, model);
   if (node.has("actuatorfrcrange")) model.remarks.left_out("force ranges of actuators");
-  const double stiffness = node.number("stiffness", 0), damping = node.number("damping", 0),
+  const double stiffness = model.springs ? node.number("stiffness", 0) : 0,
+               damping = model.dampers ? node.number("damping", 0) : 0,
                armature = node.number("armature", 0),
                friction = model.rubs ? node.number("frictionloss", 0) : 0;
   if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");

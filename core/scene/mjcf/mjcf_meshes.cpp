@@ -54,17 +54,20 @@ void place(Mesh& mesh, const Node& node) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-MeshMass mass_of(const Mesh& mesh, Inertia inertia, bool& rounded, std::string& fault) {
+MeshMass mass_of(const Mesh& mesh, Inertia inertia, std::string& fault) {
   if (inertia == Inertia::shell) return mass_of_shell(mesh, fault);
   if (inertia == Inertia::legacy) return mass_by_pyramids(mesh, fault);
   if (inertia == Inertia::exact) return mass_of_inside(mesh, fault);
   const Mesh hull = hull_of(mesh, fault);
-  if (!fault.empty()) return {};
-  const MeshMass mass = mass_by_pyramids(hull, fault);
+  return fault.empty() ? mass_by_pyramids(hull, fault) : MeshMass{};
+}
+
+/// Whether pyramids make more of a closed mesh than is in it.
+bool overcounts(const Mesh& mesh, const MeshMass& pyramids) {
   constexpr double same = 1e-6;  // of the volume: what points given as float32 leave
   std::string open;
-  rounded = mass_of_inside(mesh, open).measure < (1 - same) * mass.measure;
-  return mass;
+  const double inside = mass_of_inside(mesh, open).measure;
+  return open.empty() && inside < (1 - same) * pyramids.measure;
 }
 
 }  // namespace
@@ -130,21 +133,19 @@ const MeshMass& MjcfMeshes::of(const Node& geom, bool shell, Remarks& remarks) {
   const Node node(asset.element, "mesh " + in_quotes(name), asset.file);
   const auto inertia = shell ? Inertia::shell
                              : static_cast<Inertia>(node.word("inertia", inertias,
-                                                              asset.settings.exact_meshes ? 1 : 0));
+                                                              asset.settings.exact_meshes ? 1 : 2));
   std::optional<MeshMass>& mass = inertia == Inertia::shell ? asset.shell : asset.solid;
   if (mass) return *mass;
   std::string what, fault;
-  bool rounded = false;
   const Mesh mesh = read(node, asset, what);
-  mass = mass_of(mesh, inertia, rounded, fault);
+  mass = mass_of(mesh, inertia, fault);
   if (fault.empty() && !(mass->com.allFinite() && mass->inertia.allFinite()))
     fault = "is too large for numbers, expected a body's size [m]";
   if (!fault.empty()) node.fail(what + fault);
-  if (rounded)
+  if (inertia == Inertia::legacy && overcounts(mesh, *mass))
     remarks.count(
-        "weighed by their convex hulls, as MuJoCo does where a mesh does not say "
-        "inertia=\"exact\": "
-        "meshes that are not convex");
+        "weighed by pyramids that overlap, as MuJoCo does where a mesh does not say "
+        "inertia=\"exact\": meshes that are not convex");
   return *mass;
 }
 

@@ -22,8 +22,8 @@ class MjcfMeshes {
   /// Volume or area, centre of mass and inertia, for a density of one and in the geom's axes, of
   /// the mesh that a geom names:
   ///   p ← scale · R(refquat)ᵀ (p − refpos)
-  /// for its points p, and by `inertia`: of the inside of its convex hull (convex, what is not
-  /// said), of its own inside (exact), by pyramids (legacy), of the surface (shell, or `shell`).
+  /// for its points p, and by `inertia`: of the inside of its convex hull (convex), of its own
+  /// inside (exact), by pyramids (legacy, MuJoCo's default), of the surface (shell, or `shell`).
   const MeshMass& of(const Node& geom, bool shell, Remarks& remarks);
 
   /// The mesh that a geom names, to be drawn where `at` puts the geom in its body; its file from

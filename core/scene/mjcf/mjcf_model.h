@@ -21,6 +21,8 @@ struct MjcfModel : MjcfSettings {
   Remarks remarks;
   std::filesystem::path folder;         ///< of the model
   bool rubs = true, limits = true;      ///< flags frictionloss, limit
+  bool ties = true;                     ///< flag equality
+  bool springs = true, dampers = true;  ///< flags spring, damper
   bool clamps = true, actuates = true;  ///< flags clampctrl, actuation
   bool disabled_groups = false;         ///< actuatorgroupdisable names some
   FreeNames bodies, edges;

@@ -146,8 +146,10 @@ void settle_spring_dampers(MjcfModel& model) {
                          "inertia along every joint");
       const double inertia = matrix.mean(s.joint);
       const double stiffness =
-          inertia / (s.time_constant * s.time_constant * s.damping_ratio * s.damping_ratio);
-      const double damping = 2 * inertia / s.time_constant;
+          model.springs
+              ? inertia / (s.time_constant * s.time_constant * s.damping_ratio * s.damping_ratio)
+              : 0;
+      const double damping = model.dampers ? 2 * inertia / s.time_constant : 0;
       if (has_one_coordinate(joint.kind)) {
         joint.stiffness = stiffness;
         joint.damping = damping;

@@ -18,8 +18,8 @@ class TendonReader {
   TendonReader(const Node& node, MjcfModel& model)
       : node_(node),
         model_(model),
-        stiffness_(node.number("stiffness", 0)),
-        damping_(node.number("damping", 0)) {}
+        stiffness_(model.springs ? node.number("stiffness", 0) : 0),
+        damping_(model.dampers ? node.number("damping", 0) : 0) {}
 
   void read() {
     if (node_.number("armature", 0) != 0)

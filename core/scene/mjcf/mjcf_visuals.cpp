@@ -19,16 +19,19 @@ std::optional<Vector3d> colour_of(const Node& node) {
 }  // namespace
 
 void read_materials(const Node& asset, MjcfModel& model) {
-  for (const Node& part : asset.children("material")) {
-    const Element full = model.defaults.with_defaults(part, "material", MjcfDefaults::main_class);
-    const Node material(full, part.owner(), model.scene.file);
-    if (const auto colour = colour_of(material); colour && material.has("name"))
-      model.materials.emplace(material.text("name"), *colour);
-  }
+  for (const Node& part : asset.children("material")) try {
+      const Element full = model.defaults.with_defaults(part, "material", MjcfDefaults::main_class);
+      const Node material(full, part.owner(), model.scene.file);
+      if (const auto colour = colour_of(material); colour && material.has("name"))
+        model.materials.emplace(material.text("name"), *colour);
+    } catch (const SceneError& error) {
+      model.remarks.not_drawn(error);
+    }
 }
 
-void draw_geom(const MjcfPart& part, const std::string& body, MjcfModel& model) {
-  model.remarks.left_out("geoms as shapes to touch");
+namespace {
+
+void read_drawn(const MjcfPart& part, const std::string& body, MjcfModel& model) {
   const Element full = model.defaults.with_defaults(part.node, "geom", part.active);
   const Node geom(full, part.node.owner(), model.scene.file);
   const auto shape = static_cast<GeomShape>(geom.word("type", geom_shapes, 0));
@@ -62,6 +65,15 @@ void draw_geom(const MjcfPart& part, const std::string& body, MjcfModel& model) 
     visual.colour = known->second;
   const bool unseen = geom.has("rgba") && geom.numbers("rgba", 4)[3] == 0;
   model.drawn.emplace_back(std::move(visual), geom.number("group", 0) <= 2 && !unseen);
+}
+
+}  // namespace
+
+void draw_geom(const MjcfPart& part, const std::string& body, MjcfModel& model) try {
+  model.remarks.left_out("geoms as shapes to touch");
+  read_drawn(part, body, model);
+} catch (const SceneError& error) {
+  model.remarks.not_drawn(error);
 }
 
 void take_drawn(MjcfModel& model) {

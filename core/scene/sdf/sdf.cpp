@@ -16,7 +16,6 @@ using Scoped = std::pair<std::string, Node>;
 struct Waiting {
   std::vector<Scoped> joints;            ///< with their scopes
   std::vector<Scoped> links, canonical;  ///< with full names; models that say what carries them
-  bool one_model = false;                ///< bodies need no name of a model in front
 };
 
 Node called(const Node& node, const char* title) {
@@ -122,8 +121,10 @@ void take_model(const Node& node, const std::string& scope, bool still, SdfModel
     const std::string full = inside + link.text("name");
     model.frames.add(inside, link.text("name"),
                      {read_pose(mine), relative_to(link, "__model__"), "", ""}, mine);
-    const std::string body =
-        model.bodies.free(waiting.one_model ? full.substr(full.find("::") + 2) : full);
+    const std::string body = model.bodies.free(model.in_scene(full));
+    if (body.starts_with("ground ") && full.ends_with("::ground"))
+      model.remarks.say("called " + in_quotes(body) +
+                        ", as ground is what does not move: link 'ground'");
     model.body_of[full] = body;
     if (still) model.fixed.insert(body);
     waiting.links.emplace_back(full, mine);
@@ -171,7 +172,9 @@ Scene read_sdf(const Element& element, const std::string& file) {
   model.scene.file = file;
   const Element whole = with_sdf_includes(element, file, model.scene.included);
   const Node sdf(whole, "", file);
+  refuse_misspelt(sdf, sdf_elements());
   model.scene.gravity = {0, 0, -9.8};
+  model.bodies.take("ground");
   model.version = read_sdf_version(sdf);
   const std::vector<Node> worlds = sdf.children("world"), models = sdf.children("model");
   if (worlds.size() + models.size() != 1)
@@ -182,7 +185,7 @@ Scene read_sdf(const Element& element, const std::string& file) {
   model.scene.name = (worlds.empty() ? models.front() : top).text("name", "");
 
   Waiting waiting;
-  waiting.one_model = top.children("model").size() == 1;
+  model.one_model = top.children("model").size() == 1;
   take_frames(top, "", false, model, waiting);
   model.frames.complete();
   for (const Scoped& link : waiting.links) read_link(link, model);

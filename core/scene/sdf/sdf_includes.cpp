@@ -149,7 +149,9 @@ std::array<int, 2> read_sdf_version(const Node& sdf) {
   const char *at = text.data(), *end = at + text.size();
   const auto major = std::from_chars(at, end, version[0]);
   const auto minor = std::from_chars(std::min(major.ptr + 1, end), end, version[1]);
-  if (major.ec != std::errc() || minor.ec != std::errc() || version[0] != 1 || *major.ptr != '.')
+  constexpr int oldest = 4, newest = 12;
+  if (major.ec != std::errc() || minor.ec != std::errc() || version[0] != 1 ||
+      *major.ptr != '.' || minor.ptr != end || version[1] < oldest || version[1] > newest)
     sdf.fail("version", "is " + in_quotes(text) + ", expected 1.4 to 1.12");
   return version;
 }

@@ -190,7 +190,7 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
   joint.node = node;
   joint.spec.at = node.at();
   joint.spec.kind = kind_of_type[type];
-  joint.spec.name = model.edges.free(node.text("name"));
+  joint.spec.name = model.edges.free(model.in_scene(scope + node.text("name")));
   joint.scoped = scope + node.text("name");
   const Node parent = node.required("parent"), child = node.required("child");
   joint.parent = model.body(scope, parent.content(), parent);
@@ -247,7 +247,7 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
 SdfCoupler read_sdf_gearbox(const Node& node, const std::string& scope, SdfModel& model) {
   SdfCoupler coupler;
   coupler.node = node;
-  coupler.name = model.edges.free(node.text("name"));
+  coupler.name = model.edges.free(model.in_scene(scope + node.text("name")));
   const Node reference = node.required("gearbox_reference_body"),
              ratio = node.required("gearbox_ratio");
   if (ratio.content_number() == 0) ratio.fail("is 0, expected another number");

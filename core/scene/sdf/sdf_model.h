@@ -54,6 +54,13 @@ struct SdfModel {
   std::vector<std::pair<std::string, Node>> gears;  ///< <joint type="gearbox"> with its scope
   std::map<std::string, std::string> body_of;       ///< by the full name of a link
 
+  bool one_model = false;  ///< names need none of a model in front
+  /// What is called so in the file, with its models, in the scene.
+  std::string in_scene(const std::string& full) const {
+    const std::size_t model = full.find("::");
+    return one_model && model != std::string::npos ? full.substr(model + 2) : full;
+  }
+
   bool older_than(int minor) const { return version[0] == 1 && version[1] < minor; }
   /// The body of a link or frame; "ground" for the world.
   std::string body(const std::string& scope, const std::string& frame, const Node& asked) const;

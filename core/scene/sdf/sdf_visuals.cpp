@@ -52,40 +52,44 @@ bool take_shape(const Node& geometry, const std::string& file, VisualSpec& visua
   return visual.size.minCoeff() > 0;
 }
 
+void draw_visual(const Node& part, const std::string& body, SdfModel& model) {
+  VisualSpec visual;
+  visual.body = body;
+  visual.at = part.at();
+  std::string why = "visual shapes without a geometry";
+  const auto geometry = part.child("geometry");
+  if (!geometry || !take_shape(*geometry, part.file(), visual, why))
+    return model.remarks.left_out(why);
+  if (!relative_to(part, "").empty())
+    return model.remarks.left_out("visual shapes that are placed by other frames than their links");
+  const Pose pose = read_pose(part);
+  visual.position = pose.origin;
+  visual.rotation = pose.turn;
+  if (const auto material = part.child("material"))
+    if (const auto diffuse = material->child("diffuse")) {
+      const std::vector<double> rgb = diffuse->content_numbers();
+      if (rgb.size() != 3 && rgb.size() != 4)
+        diffuse->fail("has " + std::to_string(rgb.size()) + " numbers, expected 3 or 4");
+      visual.colour = Eigen::Vector3d(rgb[0], rgb[1], rgb[2]).cwiseMax(0).cwiseMin(1);
+    }
+  // The path is from the folder of the scene.
+  if (!visual.file.empty() && part.file() != model.scene.file) {
+    namespace fs = std::filesystem;
+    visual.file = (fs::path(part.file()).parent_path() / visual.file)
+                      .lexically_relative(fs::path(model.scene.file).parent_path())
+                      .string();
+  }
+  model.scene.visuals.push_back(std::move(visual));
+}
+
 }  // namespace
 
 void draw_sdf_link(const Node& link, const std::string& body, SdfModel& model) {
-  for (const Node& part : link.children("visual")) {
-    VisualSpec visual;
-    visual.body = body;
-    visual.at = part.at();
-    std::string why = "visual shapes without a geometry";
-    const auto geometry = part.child("geometry");
-    if (!geometry || !take_shape(*geometry, part.file(), visual, why)) {
-      model.remarks.left_out(why);
-      continue;
+  for (const Node& part : link.children("visual")) try {
+      draw_visual(part, body, model);
+    } catch (const SceneError& error) {
+      model.remarks.not_drawn(error);
     }
-    if (!relative_to(part, "").empty()) {
-      model.remarks.left_out("visual shapes that are placed by other frames than their links");
-      continue;
-    }
-    const Pose pose = read_pose(part);
-    visual.position = pose.origin;
-    visual.rotation = pose.turn;
-    if (const auto material = part.child("material"))
-      if (const auto diffuse = material->child("diffuse")) {
-        const std::vector<double> rgba = diffuse->content_numbers(4);
-        visual.colour = Eigen::Vector3d(rgba[0], rgba[1], rgba[2]).cwiseMax(0).cwiseMin(1);
-      }
-    // The path is from the folder of the scene.
-    if (!visual.file.empty() && part.file() != model.scene.file) {
-      namespace fs = std::filesystem;
-      visual.file = (fs::path(part.file()).parent_path() / visual.file)
-                        .lexically_relative(fs::path(model.scene.file).parent_path())
-                        .string();
-    }
-    model.scene.visuals.push_back(std::move(visual));
-  }
 }
 
 }  // namespace momenta::reading

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/toml/toml_values.h>
+#include <momenta/core/text/utf8.h>
 
 #include <array>
 
@@ -9,31 +10,10 @@ namespace {
 constexpr std::size_t deepest = 16;
 constexpr int most_values = 4'000'000;
 
-/// Length of the UTF-8 sequence at `i`, 0 when there is none (RFC 3629: no overlong forms, no
-/// surrogates).
-std::size_t sequence_length(std::string_view text, std::size_t i) {
-  const auto byte = [&](std::size_t k) -> unsigned {
-    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0U;
-  };
-  const auto follows = [&](std::size_t k) { return (byte(k) & 0xc0U) == 0x80U; };
-  const unsigned b = byte(0);
-  if (b < 0x80) return 1;
-  if (b >= 0xc2 && b <= 0xdf) return follows(1) ? 2 : 0;
-  if (b >= 0xe0 && b <= 0xef) {
-    if ((b == 0xe0 && byte(1) < 0xa0) || (b == 0xed && byte(1) > 0x9f)) return 0;
-    return follows(1) && follows(2) ? 3 : 0;
-  }
-  if (b >= 0xf0 && b <= 0xf4) {
-    if ((b == 0xf0 && byte(1) < 0x90) || (b == 0xf4 && byte(1) > 0x8f)) return 0;
-    return follows(1) && follows(2) && follows(3) ? 4 : 0;
-  }
-  return 0;
-}
-
 void check_characters(std::string_view text, const std::string& file) {
   Location at{1, 1};
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = sequence_length(text, i);
+    const std::size_t length = utf8_length(text.substr(i));
     if (length == 0) fail(file, at, "a byte that is not UTF-8, expected a scene in UTF-8 text");
     if (text[i] == '\0') fail(file, at, "a NUL byte, expected a scene in UTF-8 text");
     if (text[i] == '\n') {

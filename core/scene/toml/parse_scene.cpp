@@ -72,7 +72,7 @@ Scene parse_scene(std::string_view text, const std::string& file,
   }
   return scene;
 } catch (const std::bad_alloc&) {
-  reading::fail(file, {}, "the scene does not fit into memory");
+  reading::fail(file, {}, "the scene does not fit into memory, expected a smaller one");
 }
 
 }  // namespace momenta

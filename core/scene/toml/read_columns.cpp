@@ -111,10 +111,12 @@ void take_points(Columns& columns, const std::string& x_name, const std::string&
 
 void read_columns(const Fields& table, FunctionSpec& function) {
   const std::string x = table.text("x"), y = table.text("y");
-  const std::filesystem::path file =
-      std::filesystem::path(table.file()).parent_path() / table.text("file");
+  const std::string name = table.text("file");
+  const std::filesystem::path folder = std::filesystem::path(table.file()).parent_path();
+  const NamedFile file = file_inside(name, folder);
+  if (!file.fault.empty()) table.fail_key("file", "is " + in_quotes(name) + file.fault);
   try {
-    Columns columns(text_of(file, "file of columns"), file.string());
+    Columns columns(text_of(file.path, "file of columns"), (folder / name).string());
     take_points(columns, x, y, function);
   } catch (const SceneError& e) {
     table.fail_at(table.find("file")->at, std::string("file, ") + e.what());

@@ -108,9 +108,15 @@ class Way {
       best = &table;
       length = name.size();
     }
-    if (!best) fail("the scene has no " + std::string(taken()) + " of that name");
+    if (!best) {
+      std::vector<std::string_view> names;
+      for (Value& table : list.items)
+        if (!name_of(table).empty()) names.push_back(name_of(table));
+      fail("the scene has no " + std::string(taken()) + " of that name, expected one of: " +
+           listed(names) + did_you_mean(rest_.substr(0, rest_.find('.')), names));
+    }
     rest_.remove_prefix(std::min(rest_.size(), length + 1));
-    if (rest_.empty()) fail("expected a key after the name");
+    if (rest_.empty()) fail("is a name alone, expected a key after it");
     return *best;
   }
   Value& element(Value& list) {
@@ -125,7 +131,12 @@ class Way {
   Value& member(Value& table) {
     const std::string_view key = next();
     if (Value* v = find(table, key)) return *v;
-    if (!rest_.empty()) fail("the scene has no " + std::string(taken()));
+    if (!rest_.empty()) {
+      std::vector<std::string_view> keys;
+      for (const Entry& e : table.entries) keys.push_back(e.key);
+      fail("the scene has no " + std::string(taken()) + ", expected one of: " + listed(keys) +
+           did_you_mean(key, keys));
+    }
     Value v;
     v.type = Value::Type::number;
     v.at = table.at;

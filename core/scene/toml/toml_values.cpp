@@ -125,16 +125,26 @@ std::string_view described(Value::Type type) {
   return "something else";
 }
 
+namespace {
+
+/// What toml++ says, and what was expected where it does not say so itself.
+std::string in_words(std::string_view said) {
+  return "not valid TOML: " + on_one_line(said) +
+         (said.find("expected") == said.npos ? ", expected key = value, [table] or [[table]]" : "");
+}
+
+}  // namespace
+
 Value parse_toml(std::string_view text, const std::string& file) {
   check_text(text, file);
   try {
     return copied(toml::parse(text), {1, 1});
   } catch (const toml::parse_error& error) {
-    fail(file, place(error.source()), "not valid TOML: " + on_one_line(error.description()));
+    fail(file, place(error.source()), in_words(error.description()));
   } catch (const SceneError&) {
     throw;
   } catch (const std::exception& error) {
-    fail(file, {}, "not valid TOML: " + on_one_line(error.what()));
+    fail(file, {}, in_words(error.what()));
   }
 }
 

@@ -78,7 +78,7 @@ class YamlBeside {
       known.push_back(joint.name);
     }
     for (const BodySpec& body : scene_.bodies) {
-      if (body.name == frame) return frame;
+      if (body.name == frame || (frame == "ground" && body.name == ground_link)) return body.name;
       known.push_back(body.name);
     }
     fail(node, "closed_loop has " + in_quotes(frame) + ", expected a joint or a link of " +
@@ -200,7 +200,8 @@ void read_yaml(const std::filesystem::path& path, bool asked, Scene& scene, Free
     remarks.left_out("motors of name_mot, which drive nothing here");
   }
 } catch (const YAML::Exception& error) {
-  fail(path.string(), place(error.mark), "not valid YAML: " + on_one_line(error.msg));
+  fail(path.string(), place(error.mark),
+       "not valid YAML: " + on_one_line(error.msg) + ", expected lists closed_loop and type");
 }
 
 }  // namespace

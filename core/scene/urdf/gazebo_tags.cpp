@@ -153,12 +153,17 @@ bool read_part(const Node& part, const std::string& reference, Scene& scene, Fre
 
 void read_gazebo_tag(const Node& tag, Scene& scene, FreeNames& edges, Remarks& remarks) {
   const std::string reference = tag.text("reference", "");
-  const std::vector<Node> parts = tag.children();
+  // As sdformat reads them: an attribute `value` stands for the text.
+  Element whole_tag = tag.element();
+  for (Element& part : whole_tag.children)
+    if (const std::string* value = part.find("value")) part.text = *value;
+  const Node node(whole_tag, tag.owner(), tag.file());
+  const std::vector<Node> parts = node.children();
   bool whole = !parts.empty();
   for (const Node& part : parts) whole &= read_part(part, reference, scene, edges, remarks);
   if (!whole) remarks.left_out("<gazebo> of <robot>");
   const auto joint = named(scene.joints, reference);
-  const auto rest = tag.child("springReference");
+  const auto rest = node.child("springReference");
   if (rest && joint != scene.joints.end() && joint->stiffness != 0)
     joint->rest = rest->content_number();
 }

@@ -10,10 +10,82 @@
 
 namespace momenta::reading {
 
+namespace {
+
+bool is_ground(std::string text) {
+  text.erase(0, text.find_first_not_of(" \t\r\n"));
+  text.erase(text.find_last_not_of(" \t\r\n") + 1);
+  return text == "ground";
+}
+
+/// Where the name of a link stands: in an attribute, or in a <joint> of <gazebo> as text.
+void rename_in(Element& element) {
+  for (Attribute& a : element.attributes)
+    if ((a.name == "link" || a.name == "reference" ||
+         (element.name == "link" && a.name == "name")) &&
+        is_ground(a.text))
+      a.text = ground_link;
+  if ((element.name == "parent" || element.name == "child") && is_ground(element.text))
+    element.text = ground_link;
+  for (Element& child : element.children) rename_in(child);
+}
+
+}  // namespace
+
+namespace {
+
+constexpr const char* loops_of_urdf =
+    "; a loop is a <loop>, a <joint> in <gazebo>, or stands in a YAML file beside the URDF";
+
+/// @pre every joint's child is the child of no other one
+void expect_no_cycle(const std::map<std::string, const JointSpec*>& inward, const Scene& scene) {
+  std::map<std::string, const JointSpec*> seen;  // by link: the joint its walk inwards began at
+  for (const JointSpec& start : scene.joints) {
+    std::string link = start.child;
+    for (auto in = inward.find(link); in != inward.end(); in = inward.find(link)) {
+      const auto [before, fresh] = seen.emplace(link, &start);
+      if (!fresh && before->second != &start) break;
+      if (!fresh) {
+        std::string joints, links = on_one_line(link);
+        const std::string first = link;
+        do {
+          const JointSpec& joint = *inward.at(link);
+          joints += (joints.empty() ? "" : ", ") + in_quotes(joint.name);
+          link = joint.parent;
+          links += " <- " + on_one_line(link);
+        } while (link != first);
+        throw SceneError(scene.where(start.at) + "joints " + joints + " form a cycle, " + links +
+                         ", expected a tree" + loops_of_urdf);
+      }
+      link = in->second->parent;
+    }
+  }
+}
+
+}  // namespace
+
+bool rename_ground(Element& robot, bool free) {
+  bool there = false, root = true;
+  for (const Element& part : robot.children) {
+    const std::string* const name = part.find("name");
+    there |= part.name == "link" && name != nullptr && is_ground(*name);
+    if (part.name != "joint") continue;
+    for (const Element& end : part.children) {
+      const std::string* const link = end.find("link");
+      root &= end.name != "child" || link == nullptr || !is_ground(*link);
+    }
+  }
+  if (!there || (root && !free)) return false;
+  rename_in(robot);
+  return true;
+}
+
 bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
                FreeNames& edges) {
   std::map<std::string, const Node*> roots;
-  for (const Node& link : links) roots.emplace(link.text("name"), &link);
+  for (const Node& link : links)
+    if (!roots.emplace(link.text("name"), &link).second)
+      link.fail("is the second of that name, expected each name once");
   for (const JointSpec& joint : scene.joints) {
     const auto known = [&](const std::string& link, const char* what) {
       if (roots.contains(link)) return;
@@ -26,21 +98,22 @@ bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, 
     known(joint.parent, "parent");
     known(joint.child, "child");
   }
-  for (const JointSpec& joint : scene.joints) roots.erase(joint.child);
-  if (roots.empty()) {  // the joints form a cycle, which the sentence names
-    validate(scene);
-    return false;
+  std::map<std::string, const JointSpec*> inward;
+  for (const JointSpec& joint : scene.joints) {
+    roots.erase(joint.child);
+    const auto [other, fresh] = inward.emplace(joint.child, &joint);
+    if (!fresh)
+      throw SceneError(scene.where(joint.at) + "link " + in_quotes(joint.child) +
+                       " is the child of joints " + in_quotes(other->second->name) + " and " +
+                       in_quotes(joint.name) + ", expected exactly one" + loops_of_urdf);
   }
+  expect_no_cycle(inward, scene);
   if (roots.size() > 1)
     robot.fail("has two links that are no joint's child, " + in_quotes(roots.begin()->first) +
                " and " + in_quotes(std::next(roots.begin())->first) +
                ", expected one root and a tree below it");
   const std::string root = roots.begin()->first;
   if (root == "ground") {
-    if (free)
-      roots.begin()->second->fail(
-          "is the root and called ground, which cannot be free; expected "
-          "another name");
     std::erase_if(scene.bodies, [](const BodySpec& body) { return body.name == "ground"; });
     return false;
   }

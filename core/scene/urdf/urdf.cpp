@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace momenta::reading {
 namespace {
@@ -63,8 +64,31 @@ BodySpec read_link(const Node& link, Remarks& remarks) {
   return body;
 }
 
-/// q − multiplier · q_other = offset.
-LoopSpec read_mimic(const Node& mimic, const std::string& joint, FreeNames& edges) {
+/// The joint of that name, which has one coordinate or none.
+const JointSpec& coordinate_of(const Node& mimic, const std::string& name, const Scene& scene) {
+  const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
+                                  [&](const JointSpec& j) { return j.name == name; });
+  if (joint == scene.joints.end()) {
+    std::vector<std::string_view> names;
+    for (const JointSpec& j : scene.joints) names.push_back(j.name);
+    mimic.fail("joint", "is " + in_quotes(name) + ", expected the name of a joint" +
+                            did_you_mean(name, names));
+  }
+  if (joint->kind != JointKind::weld && !has_one_coordinate(joint->kind))
+    mimic.fail("ties joint " + in_quotes(name) +
+               ", which has several degrees of freedom, expected a revolute, continuous or "
+               "prismatic one");
+  return *joint;
+}
+
+/// q − multiplier · q_other = offset; nothing for a joint that is fixed. The q of a leader that is
+/// fixed is 0.
+std::optional<LoopSpec> read_mimic(const Node& mimic, const std::string& joint, const Scene& scene,
+                                   FreeNames& edges) {
+  const std::string other = mimic.text("joint");
+  if (other == joint) mimic.fail("joint", "is the joint itself, expected another one");
+  const bool leads = coordinate_of(mimic, other, scene).kind != JointKind::weld;
+  if (coordinate_of(mimic, joint, scene).kind == JointKind::weld) return std::nullopt;
   LoopSpec loop;
   loop.kind = LoopKind::coupler;
   loop.at = mimic.at();
@@ -72,7 +96,7 @@ LoopSpec read_mimic(const Node& mimic, const std::string& joint, FreeNames& edge
   const double multiplier = mimic.number("multiplier", 1);
   loop.joints = {joint};
   loop.ratios = {1};
-  if (const std::string other = mimic.text("joint"); multiplier != 0) {
+  if (multiplier != 0 && leads) {
     loop.joints.push_back(other);
     loop.ratios.push_back(-multiplier);
   }
@@ -83,9 +107,10 @@ LoopSpec read_mimic(const Node& mimic, const std::string& joint, FreeNames& edge
 /// `lower` and `upper` of a revolute or prismatic joint; a range that is not one is left out, since
 /// files have 0, 0 where nothing is known.
 void read_limits(const Node& limit, const std::string& type, JointSpec& joint, Remarks& remarks) {
-  if (type != "revolute" && type != "prismatic") return;
   const double lower = limit.number("lower", 0), upper = limit.number("upper", 0);
-  if (lower < upper)
+  if (type != "revolute" && type != "prismatic") {
+    if (lower < upper) remarks.left_out("limits of " + type + " joints, which URDF does not limit");
+  } else if (lower < upper)
     joint.limits = {lower, upper};
   else
     remarks.left_out("joint limits without a range");
@@ -162,8 +187,11 @@ Origin read_origin(const Node& node) {
 }
 
 Scene read_urdf(const Element& element, const std::string& file, const ReadOptions& options) {
-  const Node robot(element, "", file);
+  Element renamed = element;
+  const bool shared = rename_ground(renamed, options.free_root);
+  const Node robot(renamed, "", file);
   refuse_xacro(robot);
+  refuse_misspelt(robot, urdf_elements());
   Scene scene;
   scene.file = file;
   scene.name = robot.text("name", "");
@@ -171,7 +199,8 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
   Remarks remarks;
   FreeNames edges;
   std::vector<Node> links, mimics;
-  const auto materials = colours_of(robot);
+  if (shared) remarks.say("called 'ground 2', as ground is what does not move: link 'ground'");
+  const auto materials = colours_of(robot, remarks);
   for (const Node& node : robot.children("link")) {
     links.push_back(owned(node, "link"));
     scene.bodies.push_back(read_link(links.back(), remarks));
@@ -185,8 +214,12 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
     if (joint.child("mimic")) mimics.push_back(joint);
   }
   const bool welded = hang_root(scene, robot, links, options.free_root, edges);
-  for (const Node& joint : mimics)
-    scene.loops.push_back(read_mimic(*joint.child("mimic"), joint.text("name"), edges));
+  for (const Node& joint : mimics) {
+    if (const auto loop = read_mimic(*joint.child("mimic"), joint.text("name"), scene, edges))
+      scene.loops.push_back(*loop);
+    else
+      remarks.left_out("mimic of fixed joints");
+  }
   std::vector<Node> transmissions, gazebo;
   for (const Node& node : robot.children()) {
     if (node.name() == "loop")

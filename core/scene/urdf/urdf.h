@@ -23,6 +23,12 @@ struct Origin {
 };
 Origin read_origin(const Node& node);
 
+/// What a link called "ground" is called in the scene, where that is what does not move.
+inline constexpr const char* ground_link = "ground 2";
+/// The robot with such a link renamed, unless it is the root and welded, and so the ground itself.
+/// @returns whether it was
+bool rename_ground(Element& robot, bool free);
+
 /// Hangs the root, the only link that is no joint's child, on the ground by a joint in front of all
 /// others: a weld, or a free joint. A root called "ground" is the ground itself. @returns whether
 /// it was welded @throws SceneError for links that are not there, and unless the joints make one
@@ -39,7 +45,7 @@ void tell_of_fixed_root(const Scene& scene, Remarks& remarks);
 void read_transmission(const Node& transmission, Scene& scene, Remarks& remarks);
 
 /// Colours of <material>s by name, of the robot and of its links.
-std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot);
+std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot, Remarks& remarks);
 
 /// What the solids of a link are read with.
 struct LinkDrawing {

@@ -75,11 +75,15 @@ std::optional<VisualSpec> solid_of(const Node& part, const LinkDrawing& drawing,
 
 }  // namespace
 
-std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot) {
+std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot, Remarks& remarks) {
   std::map<std::string, Eigen::Vector3d> colours;
   const auto take = [&](const Node& material) {
-    if (const auto colour = colour_in(material); colour && !material.text("name", "").empty())
-      colours.emplace(material.text("name"), *colour);
+    try {
+      if (const auto colour = colour_in(material); colour && !material.text("name", "").empty())
+        colours.emplace(material.text("name"), *colour);
+    } catch (const SceneError& error) {
+      remarks.not_drawn(error);
+    }
   };
   for (const Node& material : robot.children("material")) take(material);
   // A link's material may be named by links that follow.
@@ -92,16 +96,19 @@ std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot) {
 void draw_link(const Node& link, const LinkDrawing& drawing, std::vector<VisualSpec>& visuals,
                Remarks& remarks) {
   const std::size_t before = visuals.size();
-  std::string why;
-  for (const Node& part : link.children("visual")) {
-    if (auto solid = solid_of(part, drawing, why))
-      visuals.push_back(std::move(*solid));
-    else
-      remarks.left_out(why);
-  }
-  if (visuals.size() > before) return;
-  for (const Node& part : link.children("collision"))
-    if (auto solid = solid_of(part, drawing, why)) visuals.push_back(std::move(*solid));
+  const auto draw = [&](const char* kind, auto&& tell) {
+    for (const Node& part : link.children(kind)) try {
+        std::string why;
+        if (auto solid = solid_of(part, drawing, why))
+          visuals.push_back(std::move(*solid));
+        else
+          tell([&] { remarks.left_out(why); });
+      } catch (const SceneError& error) {
+        tell([&] { remarks.not_drawn(error); });
+      }
+  };
+  draw("visual", [](auto&& words) { words(); });
+  if (visuals.size() == before) draw("collision", [](auto&&) {});
 }
 
 }  // namespace momenta::reading

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/xml/file_inside.h>
 #include <momenta/core/text/near_name.h>
 
@@ -10,11 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool lies_in(const fs::path& file, const fs::path& folder) {
-  const fs::path way = file.lexically_relative(folder);
-  return !way.empty() && *way.begin() != ".." && way != ".";
-}
-
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
@@ -24,20 +20,10 @@ bool is_file(const fs::path& path) {
 
 fs::path file_inside(const Node& node, const std::string& attribute, const std::string& name,
                      const fs::path& folder) {
-  const auto refuse = [&](const std::string& sentence) {
-    node.fail((attribute.empty() ? "" : attribute + " ") + "is " + in_quotes(name) + sentence);
-  };
-  std::error_code error;
-  const fs::path home = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  const fs::path file = fs::weakly_canonical(home / name, error);
-  if (error || !lies_in(file, home))
-    refuse(", which is not in the folder " + in_quotes(home.string()) +
-           ", expected a file there or below");
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status))
-    refuse(", which does not exist, expected a file in " + in_quotes(home.string()));
-  if (!fs::is_regular_file(status)) refuse(", which is no plain file, expected one");
-  return file;
+  const NamedFile file = file_inside(name, folder);
+  if (!file.fault.empty())
+    node.fail((attribute.empty() ? "" : attribute + " ") + "is " + in_quotes(name) + file.fault);
+  return file.path;
 }
 
 std::pair<std::size_t, std::size_t> size_of(const Element& element) {

@@ -1,6 +1,5 @@
 #pragma once
-// Files that a model names. None may lie outside the folder it is looked for in, by `..` or by a
-// symbolic link: a model from elsewhere does not read what it was not given.
+// Files that a model names.
 
 #include <momenta/core/scene/xml/xml_node.h>
 

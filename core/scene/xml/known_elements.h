@@ -20,6 +20,11 @@ struct KnownElement {
   std::string_view taken, silent, told;
 };
 
+/// Refuses an element that is misspelt: one that its surroundings do not have, and which is near to
+/// one that they have. Not in what is drawn or touched alone. Before a model is read: what a reader
+/// says of the rest would mislead. @throws SceneError
+void refuse_misspelt(const Node& root, std::span<const KnownElement> known);
+
 /// Tells what `root` and all in it have that `known` does not list as taken or silent. Elements
 /// without a row of their own are not looked into; attributes of a name space are silent, values of
 /// 0, false, none, auto and disable are too, and so is what a reader itself put in, by names with a

@@ -14,6 +14,10 @@ void Remarks::count(const std::string& sentence) {
     counts_.emplace_back(sentence, 1);
 }
 
+void Remarks::not_drawn(const std::exception& wrong) {
+  say("not drawn: " + std::string(wrong.what()));
+}
+
 std::vector<std::string> Remarks::sentences() const {
   std::vector<std::string> all;
   for (const auto& [sentence, count] : counts_)

@@ -88,8 +88,11 @@ std::string Node::content() const {
 double Node::content_number() const {
   return content_numbers(1).front();
 }
+std::vector<double> Node::content_numbers() const {
+  return numbers_of(element_->text, "");
+}
 std::vector<double> Node::content_numbers(std::size_t count) const {
-  std::vector<double> all = numbers_of(element_->text, "");
+  std::vector<double> all = content_numbers();
   expect_count(all.size(), count, "");
   return all;
 }

@@ -48,6 +48,7 @@ class Node {
   // The text of the element itself, read in the same way.
   std::string content() const;
   double content_number() const;
+  std::vector<double> content_numbers() const;
   std::vector<double> content_numbers(std::size_t count) const;
   Eigen::Vector3d content_direction() const;  ///< three numbers, made of unit length
   bool content_flag() const;                  ///< true, false, 1 or 0
