@@ -2,6 +2,7 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/loop/loop_weights.h>
 
@@ -9,6 +10,11 @@
 #include <cmath>
 
 namespace momenta {
+namespace {
+
+constexpr double near_pivot = 1e-2;  // of the best: near a singular pose
+
+}  // namespace
 
 DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
                  const FormOptions& options, const Start& start, Unknowns unknowns)
@@ -149,15 +155,44 @@ bool DaeForm::near_singular(double t, const double* y) {
     d.always_faded = layout_.m;
     for (auto* v : {&d.u, &d.udot}) v->resize(static_cast<std::size_t>(layout_.nv));
     for (auto* v : {&d.sigma, &d.lambda}) v->assign(static_cast<std::size_t>(layout_.m), 0.0);
+    if (!epsilon_.empty()) look_beside_start();
   }
-  std::fill(d.udot.begin(), d.udot.end(), 0.0);
-  if (!d.solver->free_velocity(t, y, d.udot.data(), d.u.data())) return false;
+  if (!find_pivots(t, y)) return false;
   const LoopSolver::Pivots pivots = d.solver->pivots();
   d.always_faded = std::min(d.always_faded, pivots.faded);
   const double weakest = pivots.faded > d.always_faded ? 0 : pivots.weakest;
   d.strongest = std::max(d.strongest, weakest);
-  constexpr double near = 1e-2;
-  return weakest < near * d.strongest;
+  return weakest < near_pivot * d.strongest;
+}
+
+bool DaeForm::find_pivots(double t, const double* q) {
+  OdeRestart& d = ode_restart_;
+  std::fill(d.udot.begin(), d.udot.end(), 0.0);
+  return d.solver->free_velocity(t, q, d.udot.data(), d.u.data());
+}
+
+/// A row that is redundant everywhere has no pivot beside the start either, or, a way δ off the
+/// loops' poses along a straight line, one of the order δ⁴; where the start is a singular pose it
+/// has one of the order δ².
+void DaeForm::look_beside_start() {
+  constexpr double aside = 0.2;  // [rad or lengths of the scene]
+  OdeRestart& d = ode_restart_;
+  const LoopUnits units(mechanism_);
+  for (const Eigen::VectorXd& way : {start_.u, start_.udot}) {
+    const double largest = way.cwiseQuotient(units.rates).cwiseAbs().maxCoeff();
+    if (!(largest > 0)) continue;
+    const Eigen::VectorXd step = way * (aside / largest);
+    Eigen::VectorXd q = start_.q, qdot(layout_.nq);
+    plain_.e->coordinate_rates(q.data(), step.data(), qdot.data());
+    q += qdot;
+    mechanism_.tree().normalise(q);
+    if (!find_pivots(start_.t, q.data())) return;
+    const LoopSolver::Pivots beside = d.solver->pivots();
+    if (beside.weakest < near_pivot) return;
+    d.always_faded = beside.faded;
+    d.strongest = beside.weakest;
+    return;
+  }
 }
 
 OdeSystem* DaeForm::ode_restart(double t, const double* y, double* state) {

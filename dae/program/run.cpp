@@ -1,6 +1,7 @@
 #include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
@@ -251,6 +252,8 @@ int run(const Options& o) {
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
+    if (const std::string first = reservations(study); !first.empty())
+      std::printf("%s\n\n", first.c_str());
     std::fputs(drift_table(study).c_str(), stdout);
     print_integrated(study);
     print_rank(*mechanism, a, result);

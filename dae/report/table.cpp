@@ -17,8 +17,10 @@ constexpr std::ptrdiff_t after_drifts = 7;
 
 std::string growth(const Growth& g) {
   if (std::isnan(g.exponent)) return "-";
-  if (std::isnan(g.half_range)) return fixed(g.exponent, 2);
-  return fixed(g.exponent, 2) + "±" + fixed(g.half_range, 2);
+  if (!g.is_power()) return "no power";
+  const double exponent = std::abs(g.exponent) < 0.005 ? 0 : g.exponent;  // no −0.00
+  if (std::isnan(g.half_range)) return fixed(exponent, 2);
+  return fixed(exponent, 2) + "±" + fixed(g.half_range, 2);
 }
 
 std::string count(long n) {
@@ -93,6 +95,8 @@ std::string drift_table(const StudyResult& study) {
       });
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunResult& run = runs[i];
+    if (finished(run) && !reliable(run))
+      text += labels[i] + " is not to be relied on: " + run.departure + '\n';
     if (finished(run) || (as_one && i > 0)) continue;
     text += (as_one ? "all " + std::to_string(runs.size()) + " runs" : labels[i]) + " stopped at " +
             compact(run.stopped_at, 4) + " s: " + (run.reason.empty() ? run.status : run.reason) +
