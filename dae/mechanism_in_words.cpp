@@ -170,6 +170,12 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
 
 namespace {
 
+/// Whether value i of a formula is the number 0.
+bool is_zero(const Expression& formula, std::size_t i) {
+  const auto& in = formula.tape()[static_cast<std::size_t>(formula.outputs()[i])];
+  return in.operation == formula::Operation::number && in.number == 0;
+}
+
 /// A coordinate that nothing moves, in a sentence; empty: there is none.
 std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& spec) {
   std::vector<bool> held(spec.coordinates.size(), false);
@@ -177,16 +183,17 @@ std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& 
     held[static_cast<std::size_t>(place.column)] = true;
   for (std::size_t k = 0; k < model.mass.places.size(); ++k) {
     const auto& [row, column] = model.mass.places[k];
-    const auto& value =
-        model.mass.values.tape()[static_cast<std::size_t>(model.mass.values.outputs()[k])];
-    if (value.operation == formula::Operation::number && value.number == 0) continue;
+    if (is_zero(model.mass.values, k)) continue;
     held[static_cast<std::size_t>(row)] = held[static_cast<std::size_t>(column)] = true;
   }
   for (std::size_t i = 0; i < held.size(); ++i)
     if (!held[i])
-      return "coordinate '" + spec.coordinates[i].name +
-             "' has no inertia: its rate is not in the Lagrangian, and it is in no constraint; "
-             "expected one of them";
+      return "coordinate '" + spec.coordinates[i].name + "' has no inertia: " +
+             (is_zero(model.momenta, i)
+                  ? "its rate is not in the Lagrangian, and it is in no constraint; expected one "
+                    "of them"
+                  : "the Lagrangian is linear in its rate, and it is in no constraint; expected a "
+                    "Lagrangian quadratic in it, or a constraint");
   return "";
 }
 

@@ -42,9 +42,16 @@ class MechanismPlace final : public HamiltonianPlace {
       e_->constraint_forces(sigma, work_.data());
       for (std::size_t i = 0; i < work_.size(); ++i) u[i] -= work_[i];
     }
-    factor_.inward(u);
-    for (std::size_t i = 0; i < work_.size(); ++i) u[i] *= factor_.inverse_pivots()[i];
-    factor_.outward(u);
+    solve_mass(u);
+  }
+  void solve_mass(double* x) override {
+    factor_.inward(x);
+    for (std::size_t i = 0; i < work_.size(); ++i) x[i] *= factor_.inverse_pivots()[i];
+    factor_.outward(x);
+  }
+  void mass_times(const double* x, double* p) override {
+    momentum(x, p);
+    for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= prescribed_[i];
   }
   void velocities(const double* u, double* rate) override {
     e_->move(u);
@@ -106,6 +113,15 @@ bool HamiltonianParts::prescribed() const {
 
 std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {
   return std::make_unique<MechanismPlace>(system_);
+}
+
+std::string HamiltonianParts::without_inertia(double t, const double* q) const {
+  const auto e = system_.evaluation<double>();
+  TreeFactor factor(system_.kkt_pattern(), system_.nv());
+  std::vector<double> mass(system_.kkt_pattern().mass.size());
+  e->place(t, q);
+  e->mass_entries(mass.data());
+  return system_.no_inertia(factor.factor(mass), t, q);
 }
 
 void HamiltonianParts::coordinate_rates(const double* q, const double* u, double* qdot) {

@@ -223,7 +223,8 @@ IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<doub
   if (!method.start()) {
     result.y = y0;
     result.end_time = t0;
-    result.reason = stop_sentence(name, t0, "the start has no rates: a joint has no inertia");
+    result.reason = stop_sentence(
+        name, t0, "it needs the inverse of M: " + parts->without_inertia(t0, y0.data()));
     return result;
   }
   MultistepRun<Steps<Step>>(method, system.size(), t0, output_times, options, observer).run(result);

@@ -64,4 +64,38 @@ class CpuLimit {
   long calls_ = 0;
 };
 
+/// A run against the limit of its steps: as soon as a hundred thousand of them were so short that
+/// the limit would be reached before the end, it need not go on to find out.
+class Pace {
+ public:
+  /// `count`: of the steps before t0.
+  Pace(long count, double t0, double end, long limit)
+      : at_(t0), end_(end), limit_(limit), next_(count + looked_at) {}
+  /// After `count` steps, at t.
+  bool is_hopeless(long count, double t) {
+    if (count < next_) return false;
+    per_step_ = (t - at_) / static_cast<double>(looked_at);
+    at_ = t;
+    next_ = count + looked_at;
+    return static_cast<double>(limit_ - count) * per_step_ < end_ - t;
+  }
+  std::string in_words() const {
+    return "its last " + std::to_string(looked_at) + " steps took " + in_seconds(per_step_) +
+           " each, and at that pace the limit of " + std::to_string(limit_) +
+           " steps is reached before the end; expected equations without jumps and poles there, "
+           "a method for stiff ones, or a larger tolerance";
+  }
+
+ private:
+  static constexpr long looked_at = 100'000;
+  static std::string in_seconds(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1e s", x);
+    return text;
+  }
+
+  double at_, end_, per_step_ = 0;
+  long limit_, next_;
+};
+
 }  // namespace momenta

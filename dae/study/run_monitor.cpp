@@ -89,6 +89,11 @@ bool RunMonitor::read(double t, const double* y, const double* ydot) {
 bool RunMonitor::sample(double t, const double* y, const double* ydot) {
   if (!read(t, y, ydot)) {
     trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
+    // Of a form that has them by M u = p alone.
+    Eigen::VectorXd u(mechanism_.nv()), none = u, pdot = u;
+    none.setZero();
+    if (!written_ && !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
+      trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
     return false;
   }
   const Drift position = position_drift(t, now_.q);

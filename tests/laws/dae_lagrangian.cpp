@@ -333,6 +333,17 @@ TEST(Lagrangian, RefusesWhatIsNoMechanism) {
   expect_refused(x + "lagrangian = \"x.dot^4 + y.dot^2\"\n",
                  "typed.toml:3:14: lagrangian: its second derivative by 'x.dot' twice has 'x.dot' "
                  "in it, expected a formula quadratic in the rates");
+  expect_refused(x + "lagrangian = \"x.dot^2 + y.dot^2 + x.dot*sign(x.dot)\"\n",
+                 "typed.toml:3:14: lagrangian: its 'sign' turns with the rate 'x.dot', expected a "
+                 "formula that is smooth in the rates");
+  expect_refused(x + "kinetic = \"x.dot^2 + if(y.dot < x, 1, 2)*y.dot^2\"\n",
+                 "kinetic: its 'if' turns with the rate 'y.dot'");
+  expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2\"\nconstraints = [{ name = \"c\", equation "
+                     "= \"abs(x) + abs(y) - 1\" }]\n",
+                 "constraint 'c' has 'abs', where no second derivative may exist; expected a "
+                 "smooth formula");
+  EXPECT_NO_THROW(Mechanism(
+      typed(x + "lagrangian = \"abs(x)*x.dot^2 + y.dot^2 + x.dot^2 + sign(x)*x.dot\"\n")));
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2*sin(x.dot)\"\n",
                  "kinetic: its second derivative by 'x.dot' twice has 'x.dot' in it");
   expect_refused(
