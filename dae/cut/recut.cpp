@@ -135,12 +135,14 @@ class Contest {
 
   /// Whether the sweeps carry its loops; `edges`: its tree, which enters once.
   bool enter(Recut found, const std::vector<CutEdge>& edges) {
-    const auto best_before = best_.after;
+    const int before = changes_;
     const bool swept = enter_in_every_order(std::move(found));
-    if (best_.after.sweeps != best_before.sweeps) best_edges_ = edges;
+    if (changes_ != before) best_edges_ = edges;
     entered_.push_back({edges, swept});
     return swept;
   }
+  /// How often another scene became the best.
+  int changes() const { return changes_; }
   /// Whether the sweeps carry the loops of a tree that has entered.
   std::optional<bool> entered(const std::vector<CutEdge>& edges) const {
     const auto found = std::find_if(entered_.begin(), entered_.end(),
@@ -199,6 +201,7 @@ class Contest {
     if ((now_swept && !swept_) || (now_swept == swept_ && better(found.after, best_.after))) {
       best_ = std::move(found);
       swept_ = now_swept;
+      ++changes_;
     }
     return now_swept;
   }
@@ -212,19 +215,21 @@ class Contest {
   bool swept_;
   Recut& best_;
   std::vector<CutEdge> best_edges_;
+  int changes_ = 0;
   std::vector<Entered> entered_;
 };
 
 /// J knows nothing of lanes. Of small mechanisms the trees one exchange away from the best are
-/// tried themselves, where all that are open might go into fewer. `rebuilt`: rebuild() of a tree's
-/// edges.
+/// tried themselves, where all that are open might go into fewer; a tree enters once, so that this
+/// ends. `rebuilt`: rebuild() of a tree's edges.
 template <class Rebuilt>
 void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Contest& contest,
                     const Recut& best) {
   constexpr int most_bodies = 30, most_tried = 700;  // tried: times bodies
   if (graph.vertices() > most_bodies) return;
   int tried = 0;
-  const auto one_better = [&](const std::vector<CutEdge>& from) {
+  const auto one_better = [&] {
+    const std::vector<CutEdge> from = contest.edges();  // kept: that of the best may change below
     const Cycles around(graph.vertices(), from);
     for (std::size_t e = 0; e < from.size(); ++e) {
       if (from[e].in_tree || from[e].fixed) continue;
@@ -237,15 +242,15 @@ void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Con
         Recut found;
         if (edges == graph.edges || contest.entered(edges) || rebuilt(edges, found) != none)
           continue;
-        const std::int64_t before = best.after.sweeps;
+        const int before = contest.changes();
         contest.enter(std::move(found), edges);
-        if (best.after.sweeps < before) return true;
+        if (contest.changes() != before) return true;
       }
     }
     return false;
   };
   while (best.after.open <= LoopPlan::most_slots &&
-         lanes_for(best.after.open, planar) > lanes_for(1, planar) && one_better(contest.edges()))
+         lanes_for(best.after.open, planar) > lanes_for(1, planar) && one_better())
     continue;
 }
 

@@ -3,6 +3,7 @@
 // values, and the norm of what moves (dae/solver/gauge_symmetry.h).
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/natural_sizes.h>
 #include <momenta/dae/solver/gauge_symmetry.h>
 
 #include <memory>
@@ -39,9 +40,8 @@ class ImpulseGauge : public GaugeSymmetry {
 
   const Mechanism& of_;
   DaeLayout places_;
-  static constexpr double least_rate = 1e-3;
   Gauge rule_;
-  double rate_ = 1;  ///< of a mechanism slower than 1/s, its own [1/s]: rates weigh atol times it
+  NaturalSizes natural_;
   std::shared_ptr<Measure> measure_;
 };
 

@@ -1,4 +1,5 @@
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/kkt/rate_units.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,12 +37,14 @@ double rounding_of(const Tree& tree, double length) {
   return rounding;
 }
 
-/// By row, of equations the largest |∂Φ/∂u_j| times the unit of u_j where joints stand as they are
-/// given; zero of other rows and where that is no number. Empty: no equations.
+/// By row, of formulas the largest |∂Φ/∂u_j| times the unit of u_j where joints stand as they are
+/// given; zero of other rows and where that is no number. Empty: no formulas.
 std::vector<double> sizes_of_equations(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
   std::set<std::string> names;
   for (const LoopSpec& l : mechanism.scene().loops)
     if (has_equation(l)) names.insert(l.name);
+  if (mechanism.scene().lagrangian)
+    for (const auto& c : mechanism.scene().lagrangian->constraints) names.insert(c.name);
   if (names.empty()) return {};
   std::vector<double> sizes(static_cast<std::size_t>(mechanism.m()), 0.0);
   const auto& pattern = mechanism.constraint_pattern();
@@ -64,10 +67,7 @@ LoopUnits::LoopUnits(const Mechanism& mechanism) {
   const Tree& tree = mechanism.tree();
   const double length = length_of(mechanism.scene());
   rounding = rounding_of(tree, length);
-  rates.setOnes(mechanism.nv());
-  for (const auto& b : tree.bodies)
-    for (int i = 0; i < b.nv; ++i)
-      if (b.is_length(i)) rates[b.u + i] = length;
+  rates = rate_units(mechanism);
   equations.setOnes(mechanism.m());
   const std::vector<double> of_equations = sizes_of_equations(mechanism, rates);
   std::map<std::string, const LoopSpec*> couplers;

@@ -53,9 +53,9 @@ class Trials {
       const double longest = longest_step();
       h_ = options_.initial_step > 0
                ? std::min(options_.initial_step, longest)
-               : first_step(Tableau::order, t, step_.y(), step_.first_derivative(),
-                            step_.absolute_tolerance(), options_.rtol, n_, longest,
-                            step_.workspace(), step_.y_new(),
+               : first_step(Tableau::order, system_.time_scale(), t, step_.y(),
+                            step_.first_derivative(), step_.absolute_tolerance(), options_.rtol, n_,
+                            longest, step_.workspace(), step_.y_new(),
                             [this](double at, const double* y, double* ydot) {
                               return step_.evaluate(at, y, ydot);
                             });

@@ -50,6 +50,12 @@ constexpr int max_error_test_failures = 15;
 constexpr int max_convergence_failures = 15;
 constexpr int highest_order = 5;
 
+/// Steps of order 1 in a row that are accepted only after a rejection, and steps of one length
+/// after them. Where Φ = 0 gives σ, the difference formula of order 1 errs in u by h/2 times what
+/// Φ_q turns by, σ answers, and a step twice as long, by another σ, is off in p; while no two steps
+/// are equally long IDA does not raise the order.
+constexpr int most_stuck = 10, held_steps = 8;
+
 using sundials::check;
 
 class Ida {
@@ -152,6 +158,7 @@ class Ida {
                 (floor > newton_fraction ? "; " + of_rounding(floor) : inner);
         return false;
       }
+      leave_order_one();
       return true;
     }
     cause = explain(flag);
@@ -253,6 +260,28 @@ class Ida {
     c.newton_iterations += iterations;
   }
 
+  /// After an accepted step.
+  void leave_order_one() {
+    void* ida = memory_.get();
+    long failures = 0;
+    int order = 0;
+    check(IDAGetNumErrTestFails(ida, &failures), "IDAGetNumErrTestFails");
+    check(IDAGetLastOrder(ida, &order), "IDAGetLastOrder");
+    stuck_ = order == 1 && failures > failures_ ? stuck_ + 1 : 0;
+    failures_ = failures;
+    double longest = options_.max_step;  // 0: none
+    if (stuck_ == most_stuck) {
+      check(IDAGetLastStep(ida, &longest), "IDAGetLastStep");
+      held_ = held_steps;
+      stuck_ = 0;
+    } else if (held_ == 0 || (--held_ > 0 && order == 1)) {
+      return;
+    } else {
+      held_ = 0;
+    }
+    check(IDASetMaxStep(ida, longest), "IDASetMaxStep");
+  }
+
   /// What went wrong in a trial of the present step, if anything did.
   std::string inner_cause() const {
     if (evaluation_failed_) return ": " + evaluation_cause(system_.failure());
@@ -309,6 +338,8 @@ class Ida {
   std::optional<FilteredError> filtered_;
   sundials::Integrator memory_;
   Counters earlier_attempts_;
+  long failures_ = 0;         ///< of error tests so far
+  int stuck_ = 0, held_ = 0;  ///< steps at order 1 after a rejection each; of one length, to come
   bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step
 };
 

@@ -46,8 +46,9 @@ inline double thread_seconds() {
 #endif
 }
 
-/// CPU time of the calling thread since construction against a limit; looks at the clock once in 64
-/// calls, which is what a clock read of 0.2-1 us may cost beside steps of the same length.
+/// CPU time of the calling thread since construction against a limit; looks at the clock once in so
+/// many calls as take a hundredth of a second, at the most 64: a clock read of 0.2-1 us is then
+/// little beside steps of the same length.
 class CpuLimit {
  public:
   /// `spent`: of the limit, before.
@@ -55,13 +56,18 @@ class CpuLimit {
       : limit_(seconds), start_(seconds > 0 ? thread_seconds() - spent : 0) {}
   double seconds() const { return limit_; }
   bool exceeded() {
-    if (!(limit_ > 0) || ++calls_ % 64 != 0) return false;
-    return thread_seconds() - start_ > limit_;
+    if (!(limit_ > 0) || ++calls_ < between_) return false;
+    const double now = thread_seconds() - start_;
+    between_ = now - last_ > 0.01 ? (between_ + 1) / 2 : between_ < 64 ? 2 * between_ : 64;
+    calls_ = 0;
+    last_ = now;
+    return now > limit_;
   }
 
  private:
   double limit_, start_;
-  long calls_ = 0;
+  double last_ = 0;               ///< when it was looked at [s]
+  long calls_ = 0, between_ = 1;  ///< since then; until the next look
 };
 
 /// A run against the limit of its steps: as soon as a hundred thousand of them were so short that

@@ -70,6 +70,8 @@ class OdeSystem {
   /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
   /// |y_i|.
   virtual double scale(int /*i*/) const { return 1.0; }
+  /// The time in which an unknown of its typical size typically changes by it [s].
+  virtual double time_scale() const { return 1.0; }
 
   /// The matrix of equations F(t, (y, x), f) = 0 that f and further unknowns x solve, in place of
   /// ∂f/∂y where that is large and full; null: there is none. evaluate() takes the y and f of the

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/interchange.h>
@@ -18,6 +19,7 @@
 #include <momenta/dae/sweeps/slots/loop_plan.h>
 
 #include <map>
+#include <random>
 
 namespace momenta::dae_recut {
 namespace {
@@ -262,6 +264,138 @@ TEST(Recut, PlatformOnManyLegsAndOtherGivenScenes) {
     EXPECT_LE(found.after.open, std::max(found.before.open, LoopPlan::most_slots));
     if (found.gains()) expect_same_motion(scene, recut_text(found), scene.name);
   }
+}
+
+/// Two loops on a tree whose neighbours change the best one without making it cheaper: the tree
+/// from which they are tried must stay.
+TEST(Recut, TheBestTreeMayChangeWhileItsNeighboursAreTried) {
+  const Scene scene = parse_scene(R"(
+[[body]]
+name = "b0"
+mass = 0.4188672925771823
+com = [-0.4250486745467955, -0.0918686155765841, 0.0]
+inertia = 0.04794713827803702
+[[body]]
+name = "b1"
+mass = 2.820886417866595
+inertia = 0.3236515702755325
+[[body]]
+name = "b2"
+mass = 0.0
+[[body]]
+name = "b3"
+mass = 5.428268949894632
+inertia = 0.06624427271561305
+[[body]]
+name = "b4"
+mass = 0.1549419949116786
+inertia = 0.02123508778838345
+[[body]]
+name = "b5"
+mass = 5.877814252877529
+inertia = 0.8711104421575208
+[[joint]]
+name = "J0"
+kind = "revolute"
+parent = "ground"
+child = "b0"
+[[joint]]
+name = "J1"
+kind = "revolute"
+parent = "b0"
+child = "b1"
+[[joint]]
+name = "J2"
+kind = "revolute"
+parent = "b1"
+child = "b2"
+origin = { parent = [-0.5216036999103837, 1.1061461657075153, 0.0] }
+[[joint]]
+name = "J3"
+kind = "revolute"
+parent = "b1"
+child = "b3"
+[[joint]]
+name = "J4"
+kind = "revolute"
+parent = "b3"
+child = "b4"
+[[joint]]
+name = "J5"
+kind = "prismatic"
+parent = "b4"
+child = "b5"
+origin = { parent = [-1.3852812928037386, -0.15550311025028307, 0.0] }
+axis = [0.5205742977198897, 0.8538163740251434, 0.0]
+[[loop]]
+name = "L0"
+kind = "revolute"
+parent = "ground"
+child = "b2"
+origin = { parent = [0.24850585846077533, 0.08654285458185607, 0.0], child = [1.1287757510836003, -0.7326803612019799, 0.0] }
+[[loop]]
+name = "L1"
+kind = "point"
+parent = "ground"
+child = "b5"
+origin = { parent = [0.3623258532987399, 0.1809309427941026, 0.0], child = [0.8075264398833681, -0.3521810377966432, 0.0] }
+)");
+  const Mechanism mechanism(scene);
+  const Recut found = recut(mechanism, assemble(mechanism).start);
+  EXPECT_LE(found.after.open, found.before.open);
+  if (found.gains()) expect_same_motion(scene, recut_text(found), "two loops");
+}
+
+/// Bodies hung anywhere on each other by hinges and slides, loops between any two of them.
+TEST(Recut, RandomScenesMoveAlike) {
+  int gained = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](unsigned n) { return random() % n; };
+    const auto place = [&] {
+      return Eigen::Vector3d(0.01 * static_cast<double>(below(200)) - 1,
+                             0.01 * static_cast<double>(below(200)) - 1, 0);
+    };
+    Scene scene;
+    scene.gravity = {0, -9.81, 0};
+    std::vector<Eigen::Vector3d> at{{0, 0, 0}};  // frames stay parallel to the ground's
+    const auto body = [](std::size_t k) {
+      return k == 0 ? std::string("ground") : "b" + std::to_string(k);
+    };
+    const std::size_t bodies = 5 + below(4);
+    for (std::size_t k = 1; k <= bodies; ++k) {
+      scene.bodies.push_back(rod(body(k), 0.2));
+      const std::size_t parent = below(static_cast<unsigned>(k));
+      const Eigen::Vector3d on_parent = place();
+      at.push_back(at[parent] + on_parent);
+      JointSpec joint = hinge("J" + std::to_string(k), body(parent), body(k), on_parent, 0);
+      if (below(6) == 0) {
+        joint.kind = JointKind::prismatic;
+        joint.axis = {0.6, 0.8, 0};
+      }
+      scene.joints.push_back(joint);
+    }
+    for (std::size_t k = 0; k < 2 + below(2); ++k) {
+      const std::size_t a = below(static_cast<unsigned>(bodies + 1)),
+                        b = 1 + below(static_cast<unsigned>(bodies));
+      if (a == b) continue;
+      LoopSpec loop;
+      loop.name = "L" + std::to_string(k);
+      loop.kind = below(2) ? LoopKind::revolute : LoopKind::point;
+      loop.axis = {0, 0, 1};
+      loop.parent = body(a);
+      loop.child = body(b);
+      loop.origin_child = place();
+      loop.origin_parent = at[b] + loop.origin_child - at[a];
+      scene.loops.push_back(loop);
+    }
+    const Mechanism mechanism(scene);
+    const Recut found = recut(mechanism, assemble(mechanism).start);
+    if (!found.gains()) continue;
+    ++gained;
+    expect_same_motion(scene, recut_text(found), "seed " + std::to_string(seed));
+  }
+  EXPECT_GT(gained, 10);
 }
 
 }  // namespace
