@@ -176,7 +176,7 @@ bool is_zero(const Expression& formula, std::size_t i) {
   return in.operation == formula::Operation::number && in.number == 0;
 }
 
-/// A coordinate that nothing moves, in a sentence; empty: there is none.
+/// A coordinate whose rate no momentum tells, in a sentence; empty: there is none.
 std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& spec) {
   std::vector<bool> held(spec.coordinates.size(), false);
   for (const auto& place : model.constraint.places)
@@ -212,7 +212,7 @@ std::string Mechanism::no_inertia(int rate, double t, const double* q) const {
   }
   const auto e = evaluation<double>();
   const UnheldJoints unheld = unheld_joints(*this, *e, t, q, true, rate);
-  if (!unheld.joints.empty()) return in_words(tree_, unheld.joints);
+  if (!unheld.joints.empty()) return in_words(*this, unheld);
   return rate < 0 ? "its equations overflow; expected smaller numbers"
                   : light_before_loops(rate) + "; expected --kkt sparse";
 }

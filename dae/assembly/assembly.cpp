@@ -1,6 +1,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/assembly/ordered_ends.h>
+#include <momenta/dae/assembly/second_order.h>
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/kkt/least_norm.h>
@@ -39,6 +40,7 @@ class Assembler {
       const int of_positions = mechanism_.has_nonholonomic() ? rank_of_positions() : 0;
       loops_.rows.assign(loops_.rows.size(), true);
       judge_rank(a);
+      if (!a.dependent_rows.empty() && a.rank < mechanism_.nv()) expect_motions(a);
       close_velocities(a);
       a.free_positions = mechanism_.nv() - (mechanism_.has_nonholonomic() ? of_positions : a.rank);
     }
@@ -209,6 +211,21 @@ class Assembler {
     a.kept = judged.kept;
     a.dropped = judged.dropped;
     a.dependent_rows = std::move(judged.dependent);
+  }
+
+  /// That rates which are free are those of motions.
+  void expect_motions(Assembly& a) {
+    const SecondOrder found = second_order(loops_, t_, a.start.q, a.rank);
+    e().place(t_, a.start.q.data());
+    if (found.stuck.size() == 0) return;
+    const std::string words = in_words(mechanism_, found);
+    if (found.certain)
+      throw SceneError(mechanism_.scene().where({}) +
+                       (found.all && found.flat == 0 ? "the mechanism" : "part of the mechanism") +
+                       " cannot move at its start: " + words);
+    const std::string undecided = "whether it can move is undecided: " + words;
+    if (found.all) throw SceneError(mechanism_.scene().where({}) + undecided);
+    if (a.branch.empty()) a.branch = undecided;
   }
 
   [[noreturn]] void nothing_moves() const {

@@ -5,6 +5,8 @@
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/loop/loop_weights.h>
+#include <momenta/dae/loop_word.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +118,13 @@ std::vector<double> DaeForm::initial(const Start& start) {
 }
 
 bool DaeForm::start(double t, double* y, double* ydot) {
+  if (unknowns_ == Unknowns::momenta && layout_.m > 0)
+    if (const std::string singular =
+            mass_without_inverse(mechanism_, *plain_.e, start_.t, start_.q.data());
+        !singular.empty())
+      return fail("'" + name_ + "' takes rates from M u = p, and " + singular +
+                  "; expected a form whose rates obey the " + loop_word(mechanism_) +
+                  "s, as momentum-index2");
   const auto y0 = initial(start_);
   std::copy(y0.begin(), y0.end(), y);
   std::copy_n(y + layout_.s(), softened_about_.size(), softened_about_.begin());

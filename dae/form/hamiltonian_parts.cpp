@@ -2,6 +2,7 @@
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 
@@ -115,13 +116,8 @@ std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {
   return std::make_unique<MechanismPlace>(system_);
 }
 
-std::string HamiltonianParts::without_inertia(double t, const double* q) const {
-  const auto e = system_.evaluation<double>();
-  TreeFactor factor(system_.kkt_pattern(), system_.nv());
-  std::vector<double> mass(system_.kkt_pattern().mass.size());
-  e->place(t, q);
-  e->mass_entries(mass.data());
-  return system_.no_inertia(factor.factor(mass), t, q);
+std::string HamiltonianParts::without_inverse(double t, const double* q) {
+  return mass_without_inverse(system_, *parts().e, t, q);
 }
 
 void HamiltonianParts::coordinate_rates(const double* q, const double* u, double* qdot) {

@@ -53,8 +53,8 @@ class ConstrainedHamiltonian {
   /// Whether anything is prescribed: drives, constraints that take the time.
   virtual bool prescribed() const = 0;
   virtual std::unique_ptr<HamiltonianPlace> place() const = 0;
-  /// What has no inertia at (t, q), where M is not positive definite: one sentence.
-  virtual std::string without_inertia(double t, const double* q) const = 0;
+  /// Why M has no inverse at (t, q), in words; empty: it has one.
+  virtual std::string without_inverse(double t, const double* q) = 0;
   /// q' (nq) at rates u, and q ∘ exp δ, see SecondOrder.
   virtual void coordinate_rates(const double* q, const double* u, double* qdot) = 0;
   virtual void move(const double* q, const double* delta, double* moved) = 0;

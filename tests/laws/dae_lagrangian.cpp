@@ -350,6 +350,10 @@ TEST(Lagrangian, RefusesWhatIsNoMechanism) {
       x + "kinetic = \"x.dot^2\"\n",
       "coordinate 'y' has no inertia: its rate is not in the Lagrangian, and it is in no "
       "constraint; expected one of them");
+  expect_refused(x + "lagrangian = \"0.5*x.dot^2 + x*y.dot - 0.5*y^2\"\n",
+                 "coordinate 'y' has no inertia: the Lagrangian is linear in its rate, which its "
+                 "momentum does not tell, and it is in no constraint; expected its rate squared, "
+                 "or a constraint on it");
   expect_refused(x + "kinetic = \"(x.dot + y.dot)^2\"\n", "' has no inertia, alone or with");
   expect_refused(x + "kinetic = \"x.dot^2 - y.dot^2\"\n", "coordinate 'y' has no inertia");
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2\"\npotential = \"log(x)\"\n",
@@ -396,6 +400,21 @@ TEST(Lagrangian, HoldsMasslessCoordinatesAndRedundantConstraints) {
     const RunResult found = run_form(mechanism, a.start, request);
     ASSERT_EQ(found.status, "done") << found.reason;
     EXPECT_NEAR(found.trajectory.rows.back()[1], expected.trajectory.rows.back()[1], 1e-5);
+    // Those that take rates from p alone say so.
+    for (const auto& [form, integrator] :
+         {std::pair("momentum-index3", "ida"), std::pair("momentum", "rattle")}) {
+      RunRequest other = request;
+      other.settings.form = form;
+      other.settings.integrator = integrator;
+      other.settings.gauge = "none";
+      other.settings.step = 0.01;
+      const RunResult refused = run_form(mechanism, a.start, other);
+      EXPECT_NE(refused.status, "done");
+      EXPECT_NE(refused.reason.find("takes rates from M u = p, and coordinate 'a' has no inertia "
+                                    "without the constraints; expected"),
+                std::string::npos)
+          << refused.reason;
+    }
   }
 }
 
