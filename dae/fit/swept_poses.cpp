@@ -2,6 +2,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/fit/swept_poses.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/idle_turns.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,9 @@ SweptPoses::SweptPoses(const Mechanism& mechanism, const std::string& sweep)
   unit_ = LoopUnits(mechanism).rates[rate_];
   curve_ = std::make_unique<PoseCurve>(mechanism, assembly.start.t,
                                        std::vector<SweptCoordinate>{{coordinate_, rate_, unit_}},
-                                       std::vector<std::pair<int, int>>{});
-  if (!curve_->start(assembly.start.q, beginning_))
+                                       std::vector<HeldCoordinate>{});
+  std::vector<std::string> idle;
+  if (!start_without_idle_turns(*curve_, assembly.start.t, assembly.start.q, beginning_, idle))
     throw SceneError(curve_->freedoms() == 0
                          ? "coordinate '" + sweep + "' cannot be swept: the loops leave no motion"
                          : "sweeping '" + sweep + "' leaves " +

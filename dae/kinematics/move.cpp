@@ -1,8 +1,10 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/event/bracketed_root.h>
+#include <momenta/dae/kinematics/change_point.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
-#include <momenta/dae/kinematics/least_pivot.h>
+#include <momenta/dae/kinematics/idle_turns.h>
 #include <momenta/dae/kinematics/move_rows.h>
-#include <momenta/dae/kinematics/zero_between.h>
+#include <momenta/dae/measure/rank.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +18,13 @@ constexpr double turn = 2 * std::numbers::pi;
 constexpr double longest_step = 0.1, shortest_step = 1e-9;  // in units
 // From here on s is given, not the distance: no step that bends by so little turns s round.
 constexpr double steep = 0.3;
+constexpr int most_ranked = 200;          // loop equations whose rank is asked for beside the start
+constexpr double nearly_singular = 1e-6;  // pivot of B where a curve that crosses is as near
+constexpr double at_rest = 1e-7;          // τ_s of a dead point that is typed in a file
 
 class Follower {
  public:
-  Follower(const Mechanism& mechanism, double t, const MoveRequest& request)
+  Follower(const Mechanism& mechanism, double t, const VectorXd& start, const MoveRequest& request)
       : mechanism_(mechanism), request_(request), t_(t), angles_(angles()) {
     const LoopUnits units(mechanism);
     std::vector<int> inputs;
@@ -33,12 +38,10 @@ class Follower {
       swept_.push_back({q, u, amount / first * unit_});
       inputs.push_back(u);
     }
-    for (const std::string& name : request.hold) {
-      held_.push_back(coordinate_named(mechanism_, name));
-      inputs.push_back(held_.back().second);
-    }
+    for (const std::string& name : request.hold)
+      held_.push_back(held_coordinate(mechanism_, name, start));
     result_.swept = static_cast<std::size_t>(swept_.front().q);
-    rows_.emplace(mechanism, t, request, inputs, unit_, result_);
+    rows_.emplace(mechanism, t, request, inputs, held_, unit_, result_);
   }
 
   MoveResult follow(const VectorXd& q) {
@@ -75,15 +78,14 @@ class Follower {
     result_.reach.resize(static_cast<std::size_t>(q.size()));
     for (Eigen::Index i = 0; i < q.size(); ++i)
       result_.reach[static_cast<std::size_t>(i)] = {q[i], q[i], 0};
-    if (!curve_->start(q, here_)) {
+    if (!start_without_idle_turns(*curve_, t_, q, here_, result_.idle)) {
       if (curve_->freedoms() == 0)
         throw SceneError("coordinate '" + first +
                          "' cannot be swept: what is held and the loops leave no motion, expected "
-                         "a mechanism that "
-                         "moves");
+                         "a mechanism that moves");
+      if (mechanism_.m() > 0 && mechanism_.m() <= most_ranked) refuse_change_point(q);
       std::vector<std::string> names;
-      for (const int u : curve_->free_rates())
-        names.push_back(result_.rates[static_cast<std::size_t>(u)].name);
+      for (const int u : curve_->free_rates()) names.push_back(name_to_hold(mechanism_, u));
       const int more = curve_->freedoms() - 1;
       throw SceneError("sweeping '" + first + "' leaves " + std::to_string(more) +
                        (more == 1 ? " more degree" : " more degrees") +
@@ -100,9 +102,24 @@ class Follower {
       here_.orientation = -here_.orientation;
     }
     by_ = request_.by > 0 ? request_.by / unit_ : angles_[result_.swept] ? turn / 360 : 0.01;
+    const bool dead = std::abs(here_.s_rate()) < at_rest;
+    if (dead) here_.tangent[here_.tangent.size() - 1] = 0;
     beginning_ = here_;
-    rows_->take(*curve_, here_, MovedPose::Kind::sample);
+    rows_->take(*curve_, here_, dead ? MovedPose::Kind::dead_point : MovedPose::Kind::sample);
     if (request_.to && *request_.to == result_.start) result_.end = MoveResult::End::reached;
+  }
+
+  void refuse_change_point(const VectorXd& q) const {
+    Start here;
+    here.t = t_;
+    here.q = q;
+    here.u = VectorXd::Zero(mechanism_.nv());
+    const RankReport rank = rank_report(mechanism_, here);
+    if (rank.singular_here())
+      throw SceneError("the start is a change point: the loop equations have rank " +
+                       std::to_string(rank.rank) + " there and " +
+                       std::to_string(rank.rank_nearby) +
+                       " beside it, so that curves of poses cross; expected a start beside it");
   }
 
   /// Whether the first coordinate has no rate along the curve, not at a dead point alone.
@@ -138,17 +155,75 @@ class Follower {
     if (std::abs(way) >= steep) {
       const double s = next_s(way, end);
       if (std::abs((s - here_.s) / way) <= longest_step && curve_->step_to(here_, s, to)) {
-        arrive(to, end);
-        return true;
+        const Ahead ahead = look_ahead(to);
+        if (ahead == Ahead::free) arrive(to, end);
+        if (ahead == Ahead::crossed) pass(end);
+        if (ahead != Ahead::lost) return true;
       }
     }
     for (double h = step_; h > shortest_step; h *= 0.5) {
       if (!curve_->step(here_, h, to)) continue;
-      step_ = std::min(longest_step, 1.5 * h);
-      cross(to, h, end);
+      const Ahead ahead = look_ahead(to);
+      if (ahead == Ahead::lost) continue;
+      if (ahead == Ahead::free) {
+        step_ = std::min(longest_step, 1.5 * h);
+        cross(to, h, end);
+      } else {
+        pass(end);
+      }
       return true;
     }
-    return false;
+    if (!change_at(here_, longest_step)) return false;
+    pass(end);
+    return true;
+  }
+
+  enum class Ahead {
+    free,     ///< the curve goes there
+    crossed,  ///< another curve crosses before it, at change_
+    lost      ///< it is of another curve
+  };
+
+  /// What is between here and a point that Newton's method came to. det B(τ) keeps its sign along a
+  /// curve; it changes where another one crosses, and to that one.
+  Ahead look_ahead(CurvePoint& to) {
+    const auto flips = [&] { return here_.orientation * to.orientation < 0; };
+    if (!flips() && to.pivot > nearly_singular) return Ahead::free;
+    // Unless the rows are at fault, which depend on each other where others do not.
+    if (curve_->has_spare_rows() && here_.orientation != 0 && curve_->choose_rows(to.q, here_) &&
+        curve_->orient(to) && !flips() && to.pivot > nearly_singular)
+      return Ahead::free;
+    const double length = distance(here_, to);
+    if (change_at(here_.pivot > 0 && here_.pivot < to.pivot ? here_ : to, length) ||
+        change_at(here_, length))
+      return Ahead::crossed;
+    return flips() ? Ahead::lost : Ahead::free;
+  }
+
+  /// A change point near this point, on the way ahead of this length: change_.
+  bool change_at(const CurvePoint& near, double length) {
+    constexpr double least = 1e-9;
+    if (!change_point_near(*curve_, near, change_)) return false;
+    const VectorXd way = curve_->way(here_, change_);
+    const double along = way.dot(here_.tangent);
+    if (!(along > least && along < 1.001 * length + least) ||
+        !((way - along * here_.tangent).norm() < 0.5 * along + least))
+      return false;
+    go_straight_across(*curve_, here_, change_);
+    double& s_rate = change_.tangent[change_.tangent.size() - 1];
+    if (std::abs(s_rate) < 1e-6) s_rate = 0;
+    return !(s_rate * here_.s_rate() < 0);  // a dead point comes first
+  }
+
+  /// On to change_.
+  void pass(double end) {
+    const CurvePoint at = change_;
+    rows_before(at, here_.s_rate(), end);
+    if (result_.end != MoveResult::End::stopped) return;
+    rows_->take(*curve_, at, MovedPose::Kind::change_point);
+    if (std::isfinite(end) && std::abs(at.s - end) <= 1e-9 * by_)
+      result_.end = MoveResult::End::reached;
+    move_on(at);
   }
 
   /// The point at a distance h from here where `value` of it is zero.
@@ -156,8 +231,9 @@ class Follower {
   std::optional<CurvePoint> found(double h, double at_start, double at_end, Value value) {
     CurvePoint point;
     const double zero =
-        zero_between([&](double x) { return curve_->step(here_, x, point) ? value(point) : NAN; },
-                     0, at_start, h, at_end);
+        bracketed_root([&](double x) { return curve_->step(here_, x, point) ? value(point) : NAN; },
+                       0, at_start, h, at_end, 1e-15)
+            .at;
     if (!std::isfinite(zero) || !curve_->step(here_, zero, point)) return std::nullopt;
     return point;
   }
@@ -167,17 +243,41 @@ class Follower {
     const double way = here_.s_rate();
     if (way != 0 && way * to.s_rate() < 0) {
       const auto at = found(h, way, to.s_rate(), [](const CurvePoint& p) { return p.s_rate(); });
-      if (at) {
-        rows_before(*at, way, end);
-        if (result_.end != MoveResult::End::stopped) return;
-        rows_->take(*curve_, *at, MovedPose::Kind::dead_point);
-        move_on(*at);
-        here_.tangent[here_.tangent.size() - 1] = 0;
-        return;
-      }
+      if ((!at || at->pivot < 1e-3) && change_at(at ? *at : here_, h)) return pass(end);
+      if (at) return turn_back(*at, way, end);
+    } else if (const double rest = rests_between(to, h); rest > 0) {
+      CurvePoint between;
+      if (curve_->step(here_, rest, between) && way * between.s_rate() < 0)
+        return cross(between, rest, end);
     }
     rows_before(to, to.s_rate(), end);
-    if (result_.end == MoveResult::End::stopped) move_on(to);
+    if (result_.end != MoveResult::End::stopped) return;
+    rows_->pass(*curve_, to);
+    move_on(to);
+  }
+
+  /// A dead point.
+  void turn_back(CurvePoint at, double way, double end) {
+    rows_before(at, way, end);
+    if (result_.end != MoveResult::End::stopped) return;
+    at.tangent[at.tangent.size() - 1] = 0;
+    close(at);
+    rows_->take(*curve_, at,
+                result_.end == MoveResult::End::closed ? MovedPose::Kind::sample
+                                                       : MovedPose::Kind::dead_point);
+    move_on(at);
+  }
+
+  /// How far from here τ_s is least, of one sign at both ends, by Hermite's cubic through them: two
+  /// dead points may lie between. 0 where it is least at an end.
+  double rests_between(const CurvePoint& to, double h) const {
+    const double first = here_.s_rate(), last = to.s_rate(),
+                 bend = 6 * ((to.s - here_.s) / h - 0.5 * (first + last));
+    if (!(bend * first < 0)) return 0;
+    const double x = 0.5 * (1 + (last - first) / bend);
+    if (!(x > 0 && x < 1)) return 0;
+    const double least = first + (last - first) * x + bend * x * (1 - x);
+    return std::abs(least) < 0.5 * std::abs(first) || least * first < 0 ? x * h : 0;
   }
 
   /// The rows between here and a point, s on one way.
@@ -196,12 +296,7 @@ class Follower {
 
   /// How far along τ of one point another is.
   double distance(const CurvePoint& from, const CurvePoint& to) {
-    VectorXd rates(mechanism_.nv()), qdot = to.q - from.q;
-    Evaluation<double>& e = curve_->loops().evaluation();
-    e.place(t_, from.q.data());
-    e.joint_rates(from.q.data(), qdot.data(), rates.data());
-    const VectorXd step = rates.cwiseQuotient(curve_->loops().units().rates);
-    return step.dot(from.tangent.head(mechanism_.nv())) + (to.s - from.s) * from.s_rate();
+    return curve_->way(from, to).dot(from.tangent);
   }
 
   /// A row whose s was asked for.
@@ -209,14 +304,28 @@ class Follower {
     rows_->take(*curve_, to, MovedPose::Kind::sample);
     if (std::isfinite(end) && std::abs(to.s - end) <= 1e-9 * by_)
       result_.end = MoveResult::End::reached;
-    else if (!std::isfinite(end) && is_beginning(to))
-      result_.end = MoveResult::End::closed;
+    else
+      close(to);
     move_on(to);
   }
 
+  /// Where the curve is closed, it ends.
+  void close(const CurvePoint& to) {
+    if (!is_beginning(to)) return;
+    if (!request_.to)
+      result_.end = MoveResult::End::closed;
+    else if (std::abs(to.s) < 1e-9)
+      result_.why = result_.coordinates[result_.swept].name + " does not come to " +
+                    reading::digits(*request_.to) + ": it is back at the start";
+  }
+
   /// The same pose, passed the same way.
-  bool is_beginning(const CurvePoint& to) const {
+  bool is_beginning(CurvePoint to) const {
     constexpr double same = 1e-7;
+    for (const auto& body : mechanism_.tree().bodies)  // −q is the same turn
+      if (const int at = body.q + body.nq - 4;
+          body.has_quaternion() && to.q.segment<4>(at).dot(beginning_.q.segment<4>(at)) < 0)
+        to.q.segment<4>(at) *= -1;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {
       double apart = to.q[i] - beginning_.q[i];
       if (angles_[static_cast<std::size_t>(i)]) apart = std::remainder(apart, turn);
@@ -239,30 +348,25 @@ class Follower {
         }
         widen(reach, to.q[body.q + i]);
       }
-    if (before_ && before_->pivot > here_.pivot && here_.pivot <= to.pivot) look_for_change(to);
+    look_back(to);
     before_ = here_;
     here_ = to;
-    if (recalled_) here_ = *std::exchange(recalled_, std::nullopt);
   }
 
-  /// The smallest pivot has passed a least value between the point before here and `to`: a change
-  /// point if it is zero, and that of all rows.
-  void look_for_change(const CurvePoint& to) {
-    constexpr double lost = 1e-7;
-    const CurvePoint from = *before_;
-    const CurvePoint least =
-        least_pivot(*curve_, from, distance(from, here_) + distance(here_, to), here_);
-    if (!(least.pivot < lost)) return;
-    if (curve_->reciprocal_condition(least.q) < lost) {
-      rows_->take(*curve_, least, MovedPose::Kind::change_point);
-      return;
-    }
-    CurvePoint known = from, again;  // the rows were at fault
-    if (!curve_->choose_rows(least.q, known) || !curve_->step(known, distance(known, to), again))
-      return;
-    recalled_ = to;
-    recalled_->orientation = again.orientation;
-    recalled_->pivot = again.pivot;
+  /// Where an even number of ranks are lost at once, det B keeps its sign; its smallest pivot goes
+  /// down to zero and up again.
+  void look_back(const CurvePoint& to) {
+    if (!before_ || !(before_->pivot > here_.pivot && here_.pivot <= to.pivot)) return;
+    const double first = distance(*before_, here_), second = distance(here_, to),
+                 down = here_.pivot * first / (before_->pivot - here_.pivot),
+                 up = here_.pivot * second / (to.pivot - here_.pivot);
+    if (here_.pivot == 0 || !(std::min(down, up) < std::max(first, second))) return;
+    CurvePoint at;
+    if (!change_point_near(*curve_, here_, at)) return;
+    const double along = distance(*before_, at);
+    if (!(along > 0 && along < first + second)) return;
+    go_straight_across(*curve_, *before_, at);
+    rows_->take(*curve_, at, MovedPose::Kind::change_point);
   }
 
   static void widen(Reach& reach, double value) {
@@ -275,11 +379,11 @@ class Follower {
   double t_;  ///< [s]
   std::vector<bool> angles_;
   std::vector<SweptCoordinate> swept_;
-  std::vector<std::pair<int, int>> held_;
+  std::vector<HeldCoordinate> held_;
   std::optional<MoveRows> rows_;
   PoseCurve* curve_ = nullptr;
-  CurvePoint here_, beginning_;
-  std::optional<CurvePoint> before_, recalled_;
+  CurvePoint here_, beginning_, change_;
+  std::optional<CurvePoint> before_;
   // s of the curve is in units: pose.s = unit_ s.
   double step_ = longest_step, by_ = 0, unit_ = 1;
   MoveResult result_;
@@ -306,7 +410,7 @@ MoveResult move(const Mechanism& mechanism, double t, const VectorXd& q,
   if (request.to)
     expect_finite("--to", *request.to, std::isfinite(*request.to),
                   "a finite coordinate [rad or m]");
-  return Follower(mechanism, t, request).follow(q);
+  return Follower(mechanism, t, q, request).follow(q);
 }
 
 }  // namespace momenta

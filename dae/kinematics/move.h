@@ -13,6 +13,7 @@
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,7 +25,7 @@ namespace momenta {
 struct MoveRequest {
   /// Coordinates "O" or "J.q2", and how far they go in proportion [rad or m].
   std::vector<std::pair<std::string, double>> sweep;
-  std::vector<std::string> hold;  ///< coordinates that stay where they are at the start
+  std::vector<std::string> hold;  ///< what stays as it is at the start (held_coordinate.h)
   std::string
       output;  ///< a coordinate: how well force is passed to it (transmission.h); empty: none
   std::optional<double> to;  ///< where the first ends [rad or m]; none: once along the curve
@@ -52,7 +53,7 @@ struct MovedPose {
   Eigen::VectorXd udot;
   std::vector<double> markers;       ///< x y z [m] and its derivatives by s, of each; as q, u
   double transmission_angle = 0;     ///< of the output [rad]; NaN where there is none
-  double joint_force = 0;            ///< largest for a unit effort on the output; NaN: infinite
+  double joint_force = 0;            ///< largest for a unit effort on the output; NaN: none told
   double reciprocal_condition = -1;  ///< smallest over largest singular value of J; −1: not asked
 };
 /// "sample", "dead point", "change point".
@@ -76,15 +77,29 @@ struct MoveResult {
   End end = End::stopped;           ///< how it ended
   std::string why;                  ///< where it stopped; else empty
   std::string scene;                ///< its name
+  std::vector<std::string> idle;    ///< balls whose turn moves nothing else, and is held
   std::vector<Column> coordinates;  ///< of q
   std::vector<Column> rates;        ///< of u
   std::vector<Column> markers;      ///< of MovedPose::markers
   std::size_t swept = 0;            ///< place of the first among `coordinates`
-  int output = -1;                  ///< place of the output among `coordinates`; −1: none
-  int output_rate = -1;             ///< and among `rates`
-  double start = 0;                 ///< its value at s = 0
-  std::vector<MovedPose> poses;     ///< along the curve
-  std::vector<Reach> reach;         ///< of each coordinate
+  /// A value along the curve, and where.
+  struct Extreme {
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: nowhere
+    double s = 0;                                             ///< as in MovedPose
+  };
+  /// What is passed to the output, located between poses.
+  struct Passed {
+    Extreme least_angle;    ///< transmission angle [rad]
+    Extreme largest_angle;  ///< [rad]
+    Extreme least_force;    ///< joint force for a unit effort
+    Extreme largest_force;  ///< infinite at most dead points
+  };
+  Passed passed;                 ///< of the output
+  int output = -1;               ///< place of the output among `coordinates`; −1: none
+  int output_rate = -1;          ///< and among `rates`
+  double start = 0;              ///< its value at s = 0
+  std::vector<MovedPose> poses;  ///< along the curve
+  std::vector<Reach> reach;      ///< of each coordinate
   /// How many there are among the poses.
   int dead_points() const { return count(MovedPose::Kind::dead_point); }
   /// How many there are among the poses.

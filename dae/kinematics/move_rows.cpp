@@ -9,14 +9,16 @@
 namespace momenta {
 
 MoveRows::MoveRows(const Mechanism& mechanism, double t, const MoveRequest& request,
-                   const std::vector<int>& inputs, double unit, MoveResult& result)
+                   const std::vector<int>& inputs, const std::vector<HeldCoordinate>& held,
+                   double unit, MoveResult& result)
     : request_(request), t_(t), unit_(unit), result_(result) {
   result_.scene = mechanism.scene().name;
   result_.coordinates = mechanism.coordinate_columns();
   result_.rates = mechanism.rate_columns();
   result_.markers = mechanism.marker_columns();
   if (request.output.empty()) return;
-  transmission_ = std::make_unique<Transmission>(mechanism, t, request.output, inputs);
+  transmission_ = std::make_unique<Transmission>(mechanism, t, request.output, inputs, held);
+  extremes_ = std::make_unique<PassedExtremes>(*transmission_, unit, result.passed);
   std::tie(result_.output, result_.output_rate) = coordinate_named(mechanism, request.output);
 }
 
@@ -47,7 +49,10 @@ void MoveRows::take(PoseCurve& curve, const CurvePoint& at, MovedPose::Kind kind
   pose.branch = pose.u.size() > 0 ? at.branch() : 0;
   take_markers(curve.loops().evaluation(), pose);
   if (transmission_) {
-    const Transmitting passed = transmission_->at(at.q);
+    const Transmitting passed =
+        kind == MovedPose::Kind::change_point
+            ? transmission_->at(at.q)
+            : extremes_->pass(curve, at, kind == MovedPose::Kind::dead_point);
     pose.transmission_angle = passed.angle;
     pose.joint_force = passed.joint_force;
   }
@@ -58,6 +63,10 @@ void MoveRows::take(PoseCurve& curve, const CurvePoint& at, MovedPose::Kind kind
            (std::prev(place)->s - pose.s) * at.s_rate() > 0)
       --place;
   result_.poses.insert(place, std::move(pose));
+}
+
+void MoveRows::pass(PoseCurve& curve, const CurvePoint& at) {
+  if (extremes_) extremes_->pass(curve, at, false);
 }
 
 const char* name_of(MovedPose::Kind kind) {

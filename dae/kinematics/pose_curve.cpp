@@ -15,7 +15,7 @@ constexpr double closed = 1e-12;  // |F|∞ in units, at least
 }  // namespace
 
 PoseCurve::PoseCurve(const Mechanism& mechanism, double t, std::vector<SweptCoordinate> swept,
-                     std::vector<std::pair<int, int>> held)
+                     std::vector<HeldCoordinate> held)
     : loops_(mechanism),
       t_(t),
       tolerance_(std::max(closed, loops_.units().rounding)),
@@ -23,18 +23,31 @@ PoseCurve::PoseCurve(const Mechanism& mechanism, double t, std::vector<SweptCoor
       m_(mechanism.m()),
       swept_(std::move(swept)),
       held_(std::move(held)),
-      all_(m_ + static_cast<int>(swept_.size() + held_.size())),
-      jacobian_(Eigen::MatrixXd::Zero(all_.size(), n_ + 1)),
       bordered_(n_ + 1, n_ + 1),
       residual_(n_ + 1),
       along_(n_ + 1),
       lu_(n_ + 1) {
+  size_rows();
+}
+
+void PoseCurve::hold(HeldCoordinate held) {
+  held_.push_back(std::move(held));
+  size_rows();
+}
+
+void PoseCurve::release() {
+  held_.pop_back();
+  size_rows();
+}
+
+void PoseCurve::size_rows() {
+  all_.resize(m_ + static_cast<int>(swept_.size() + held_.size()));
+  jacobian_.setZero(all_.size(), n_ + 1);
   int row = m_;
   for (const SweptCoordinate& c : swept_) {
     jacobian_(row, c.u) = 1;
     jacobian_(row++, n_) = -c.amount / loops_.units().rates[c.u];
   }
-  for (const auto& [q, u] : held_) jacobian_(row++, u) = 1;
 }
 
 void PoseCurve::take_jacobian(const Eigen::VectorXd& q) {
@@ -43,6 +56,14 @@ void PoseCurve::take_jacobian(const Eigen::VectorXd& q) {
   const std::vector<double> entries = loops_.jacobian();
   for (std::size_t k = 0; k < entries.size(); ++k)
     jacobian_(loops_.pattern()[k].row, loops_.pattern()[k].column) = entries[k];
+  const Eigen::VectorXd& units = loops_.units().rates;
+  int row = m_ + static_cast<int>(swept_.size());
+  for (const HeldCoordinate& held : held_) {
+    jacobian_.row(row).head(n_) =
+        held.row(loops_.evaluation(), q, n_).cwiseProduct(units.transpose()) /
+        units[held.rates.front()];
+    ++row;
+  }
 }
 
 double PoseCurve::take_residual(const Eigen::VectorXd& q, double s) {
@@ -50,7 +71,8 @@ double PoseCurve::take_residual(const Eigen::VectorXd& q, double s) {
   int row = m_;
   for (const SweptCoordinate& c : swept_)
     all_[row++] = (q[c.q] - start_[c.q] - c.amount * s) / loops_.units().rates[c.u];
-  for (const auto& [at, u] : held_) all_[row++] = (q[at] - start_[at]) / loops_.units().rates[u];
+  for (const HeldCoordinate& held : held_)
+    all_[row++] = (held.value(q) - held.value(start_)) / loops_.units().rates[held.rates.front()];
   for (int i = 0; i < n_; ++i) residual_[i] = all_[rows_[static_cast<std::size_t>(i)]];
   residual_[n_] = 0;
   return all_.size() > 0 ? all_.cwiseAbs().maxCoeff() : 0;
@@ -189,11 +211,42 @@ double PoseCurve::reciprocal_condition(const Eigen::VectorXd& q) {
 bool PoseCurve::choose_rows(const Eigen::VectorXd& q, CurvePoint& known) {
   if (!choose_rows(q)) return false;
   const int before = known.orientation;
-  take_jacobian(known.q);
-  if (!take_tangent(Eigen::VectorXd(known.tangent), known)) return false;
+  if (!orient(known)) return false;
   if (known.orientation != before) sign_ = -sign_;
   known.orientation = before;
   return true;
+}
+
+bool PoseCurve::orient(CurvePoint& point) {
+  take_jacobian(point.q);
+  return take_tangent(Eigen::VectorXd(point.tangent), point);
+}
+
+double PoseCurve::linearise(const CurvePoint& at, Eigen::VectorXd& residual,
+                            Eigen::MatrixXd& jacobian) {
+  const double open = take_residual(at.q, at.s);
+  take_jacobian(at.q);
+  residual = residual_.head(n_);
+  jacobian.resize(n_, n_ + 1);
+  for (int i = 0; i < n_; ++i) jacobian.row(i) = jacobian_.row(rows_[static_cast<std::size_t>(i)]);
+  return open;
+}
+
+CurvePoint PoseCurve::moved(const CurvePoint& from, const Eigen::VectorXd& step) {
+  CurvePoint to;
+  to.q = loops_.moved(from.q, step.head(n_));
+  to.s = from.s + step[n_];
+  return to;
+}
+
+Eigen::VectorXd PoseCurve::way(const CurvePoint& from, const CurvePoint& to) {
+  Eigen::VectorXd step(n_ + 1), rates(n_), qdot = to.q - from.q;
+  Evaluation<double>& e = loops_.evaluation();
+  e.place(t_, from.q.data());
+  e.joint_rates(from.q.data(), qdot.data(), rates.data());
+  step.head(n_) = rates.cwiseQuotient(loops_.units().rates);
+  step[n_] = to.s - from.s;
+  return step;
 }
 
 }  // namespace momenta

@@ -23,6 +23,7 @@
 // Source: Allgower, Georg, Introduction to Numerical Continuation Methods, ch. 2, 6, 8.
 
 #include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 
 #include <Eigen/LU>
 #include <string>
@@ -43,8 +44,8 @@ struct CurvePoint {
   Eigen::VectorXd q;        ///< nq
   double s = 0;             ///< how far c has come
   Eigen::VectorXd tangent;  ///< τ (nv + 1), δ and s; of unit length
-  int orientation = 0;      ///< sign of det B with r = τ
-  double pivot = 0;         ///< smallest pivot of that B, over the largest
+  int orientation = 0;      ///< sign of det B with r = τ; 0 at a change point
+  double pivot = 0;         ///< smallest pivot of that B, over the largest; 0 at a change point
   /// +1 or −1: the sign of det B with r = e_s; 0 at a dead point.
   int branch() const { return orientation * (s_rate() > 0 ? 1 : s_rate() < 0 ? -1 : 0); }
   double s_rate() const { return tangent[tangent.size() - 1]; }  ///< τ_s
@@ -52,9 +53,14 @@ struct CurvePoint {
 
 class PoseCurve {
  public:
-  /// `held`: places in q and u. Drives stand at t [s]. The mechanism must outlive it.
+  /// Drives stand at t [s]. The mechanism must outlive it.
   PoseCurve(const Mechanism& mechanism, double t, std::vector<SweptCoordinate> swept,
-            std::vector<std::pair<int, int>> held);
+            std::vector<HeldCoordinate> held);
+
+  /// Holds one more, before the start; the last of them no longer.
+  void hold(HeldCoordinate held);
+  void release();
+  const std::vector<HeldCoordinate>& held() const { return held_; }
 
   /// The point at the pose q, s = 0, with τ_s ≥ 0. False where not one freedom is left:
   /// freedoms() tells how many.
@@ -79,9 +85,22 @@ class PoseCurve {
   /// its orientation. False where J has lost rank.
   bool choose_rows(const Eigen::VectorXd& q, CurvePoint& known);
 
+  /// Whether F has more rows than are independent.
+  bool has_spare_rows() const { return all_.size() > n_; }
+  /// The orientation of a point by the rows chosen now.
+  bool orient(CurvePoint& point);
+
+  /// F and J of the rows chosen; |F|∞ of all.
+  double linearise(const CurvePoint& at, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian);
+  /// The pose and s after a step (nv + 1), on the curve or not.
+  CurvePoint moved(const CurvePoint& from, const Eigen::VectorXd& step);
+  /// The step (nv + 1) from one point to another near it.
+  Eigen::VectorXd way(const CurvePoint& from, const CurvePoint& to);
+
   ScaledLoops& loops() { return loops_; }
 
  private:
+  void size_rows();
   bool choose_rows(const Eigen::VectorXd& q);
   void take_jacobian(const Eigen::VectorXd& q);
   /// F of all rows; of `rows_` alone into residual_.
@@ -93,7 +112,7 @@ class PoseCurve {
   double t_, tolerance_;
   int n_, m_;  ///< nv; rows of Φ
   std::vector<SweptCoordinate> swept_;
-  std::vector<std::pair<int, int>> held_;
+  std::vector<HeldCoordinate> held_;
   Eigen::VectorXd start_;        ///< q where s = 0
   int freedoms_ = 0, sign_ = 1;  ///< of orientations, by the choice of rows
   std::vector<int> free_rates_;

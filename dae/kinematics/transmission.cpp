@@ -55,10 +55,13 @@ Scene Transmission::with_contacts(Scene scene, const std::string& link, const st
 }
 
 Transmission::Transmission(const Mechanism& mechanism, double t, const std::string& output,
-                           const std::vector<int>& inputs)
-    : t_(t), inputs_(inputs) {
+                           const std::vector<int>& inputs, std::vector<HeldCoordinate> held)
+    : t_(t), inputs_(inputs), held_(std::move(held)) {
   std::tie(output_q_, output_u_) = coordinate_named(mechanism, output);
-  if (std::find(inputs.begin(), inputs.end(), output_u_) != inputs.end())
+  const bool is_held = std::any_of(held_.begin(), held_.end(), [&](const HeldCoordinate& h) {
+    return h.rates == std::vector<int>{output_u_};
+  });
+  if (is_held || std::find(inputs.begin(), inputs.end(), output_u_) != inputs.end())
     throw SceneError("output '" + output +
                      "' is swept or held; expected a coordinate that follows the swept one");
   const JointSpec& joint = joint_with(mechanism, output_u_, output);
@@ -72,8 +75,8 @@ Transmission::Transmission(const Mechanism& mechanism, double t, const std::stri
       if (places[i].name == contact.name) contact.place = i;
   loops_ = std::make_unique<ScaledLoops>(*mechanism_);
   wrenches_ = make_wrench_sweep(*mechanism_);
-  balance_ =
-      Eigen::MatrixXd::Zero(mechanism_->nv(), mechanism_->m() + static_cast<int>(inputs_.size()));
+  balance_ = Eigen::MatrixXd::Zero(
+      mechanism_->nv(), mechanism_->m() + static_cast<int>(inputs_.size() + held_.size()));
 }
 
 /// λ (m); empty where the inputs cannot hold the output.
@@ -86,6 +89,9 @@ VectorXd Transmission::multipliers(const VectorXd& q) {
     balance_(loops_->pattern()[k].column, loops_->pattern()[k].row) = entries[k];
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     balance_(inputs_[i], m + static_cast<int>(i)) = 1;
+  auto column = m + static_cast<int>(inputs_.size());
+  for (const HeldCoordinate& held : held_)
+    balance_.col(column++) = held.row(loops_->evaluation(), q, mechanism_->nv()).transpose();
   VectorXd effort = VectorXd::Zero(mechanism_->nv());
   effort[output_u_] = loops_->units().rates[output_u_];
   solver_.compute(balance_, balance_pivots);

@@ -21,6 +21,7 @@
 
 #include <momenta/dae/assembly/scaled_loops.h>
 #include <momenta/dae/dense/least_squares.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 #include <momenta/dae/measure/reactions.h>
 
 #include <string>
@@ -39,11 +40,11 @@ struct Transmitting {
 
 class Transmission {
  public:
-  /// `output`: a coordinate, as coordinate_named takes it; `inputs`: places in u of the swept and
-  /// the held coordinates. Drives stand at t [s]. Makes a mechanism of its own.
+  /// `output`: a coordinate, as coordinate_named takes it; `inputs`: places in u of the swept
+  /// coordinates. Drives stand at t [s]. Makes a mechanism of its own.
   /// @throws SceneError where the output is not known or is one of the inputs
   Transmission(const Mechanism& mechanism, double t, const std::string& output,
-               const std::vector<int>& inputs);
+               const std::vector<int>& inputs, std::vector<HeldCoordinate> held);
 
   /// Place of the output in q.
   int output() const { return output_q_; }
@@ -67,6 +68,7 @@ class Transmission {
   double t_;
   int output_q_ = 0, output_u_ = 0;
   std::vector<int> inputs_;
+  std::vector<HeldCoordinate> held_;
   std::string joint_;  ///< of the output
   std::unique_ptr<Mechanism> mechanism_;
   std::unique_ptr<ScaledLoops> loops_;

@@ -10,6 +10,37 @@ namespace momenta {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+constexpr double least_ritz = 1e-8;  // of the largest value: rounding
+
+/// The sum of the eigenvectors of negative value.
+VectorXd negative_of_symmetric(const MatrixXd& T) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (T + T.transpose()));
+  const double dust = least_ritz * ritz.eigenvalues().cwiseAbs().maxCoeff();
+  VectorXd sum = VectorXd::Zero(T.rows());
+  for (int i = 0; i < T.rows() && ritz.eigenvalues()[i] < -dust; ++i)
+    sum += ritz.eigenvectors().col(i);
+  return sum;
+}
+
+/// The same, of real values alone.
+VectorXd negative_of(const MatrixXd& T) {
+  if (!(T - T.transpose()).isZero(least_ritz * T.cwiseAbs().maxCoeff())) {
+    const Eigen::EigenSolver<MatrixXd> ritz(T);
+    const double dust = least_ritz * ritz.eigenvalues().cwiseAbs().maxCoeff();
+    VectorXd sum = VectorXd::Zero(T.rows());
+    for (int i = 0; i < T.rows(); ++i)
+      if (const auto kappa = ritz.eigenvalues()[i];
+          kappa.real() < -dust && std::abs(kappa.imag()) <= dust)
+        sum += ritz.eigenvectors().col(i).real();
+    return sum;
+  }
+  return negative_of_symmetric(T);
+}
+
+}  // namespace
+
 DownwardWays::DownwardWays(const Mechanism& mechanism, PoseMotion& poses)
     : mechanism_(mechanism),
       poses_(poses),
@@ -37,10 +68,9 @@ VectorXd DownwardWays::stiffness(double t, const VectorXd& y) {
 }
 
 /// The sum of the Ritz vectors of negative value, in the space of random, image, image of image, …;
-/// `image` takes y and M y and is self-adjoint in M; an empty one ends it.
+/// `image` takes y and M y, and is self-adjoint in M where K is symmetric; an empty one ends it.
 template <class Image>
-VectorXd DownwardWays::negative(int steps, Image&& image) {
-  constexpr double least = 1e-8;  // of the largest value: rounding
+VectorXd DownwardWays::negative(int steps, bool symmetric, Image&& image) {
   const int nv = mechanism_.nv();
   steps = std::min(steps, nv);
   std::mt19937 random(1);
@@ -69,29 +99,25 @@ VectorXd DownwardWays::negative(int steps, Image&& image) {
   }
   if (count == 0) return {};
   const MatrixXd T = P.leftCols(count).transpose() * images.leftCols(count);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (T + T.transpose()));
-  const double dust = least * ritz.eigenvalues().cwiseAbs().maxCoeff();
-  VectorXd sum = VectorXd::Zero(count);
-  for (int i = 0; i < count && ritz.eigenvalues()[i] < -dust; ++i)
-    sum += ritz.eigenvectors().col(i);
+  const VectorXd sum = symmetric ? negative_of_symmetric(T) : negative_of(T);
   return sum.isZero(0) ? VectorXd() : VectorXd(Y.leftCols(count) * sum);
 }
 
 VectorXd DownwardWays::find(double t, const VectorXd& q, const VectorXd& lambda,
-                            LocalPencil& factored) {
+                            LocalPencil& factored, bool symmetric) {
   constexpr int most_far = 60, most_near = 30;
   now_ = t;
   place_ = q;
   std::copy(lambda.begin(), lambda.end(), lambda_.begin());
   poses_.evaluation().place(t, q.data());
-  const VectorXd far = negative(most_far, [&](const VectorXd& y, const VectorXd&) {
+  const VectorXd far = negative(most_far, symmetric, [&](const VectorXd& y, const VectorXd&) {
     VectorXd next;
     const VectorXd force = stiffness(t, y);
     return poses_.free_velocity(t, q, force, next) ? next : VectorXd();
   });
   if (far.size() > 0) return far;
   poses_.evaluation().place(t, q.data());
-  return negative(most_near, [&](const VectorXd&, VectorXd p) {
+  return negative(most_near, symmetric, [&](const VectorXd&, VectorXd p) {
     VectorXd gap = VectorXd::Zero(mechanism_.m());
     factored.solve(p, gap);
     return p;

@@ -30,6 +30,22 @@ double whole_mass(const Mechanism& mechanism) {
   return mass;
 }
 
+/// M_ii (nv) up to which a joint moves no mass worth the name, beside that of a body of the mean
+/// size. It has no frequency of its own: the loops move it, and what it is left with is the
+/// rounding of their forces.
+VectorXd massless_up_to(const Mechanism& mechanism) {
+  constexpr double part = 1e-9;
+  const auto bodies =
+      static_cast<double>(std::max<std::size_t>(1, mechanism.scene().bodies.size()));
+  const double mass = whole_mass(mechanism) / bodies,
+               length = length_of(mechanism.scene()) / bodies;
+  VectorXd least = VectorXd::Constant(mechanism.nv(), part * mass * length * length);
+  for (const Tree::Body& b : mechanism.tree().bodies)
+    for (int i = 0; i < b.nv; ++i)
+      if (b.is_length(i)) least[b.u + i] = part * mass;
+  return least;
+}
+
 /// Of a Lagrangian: the force on a coordinate where it stands, and what a rate of 1/s weighs.
 VectorXd formula_scales(const Mechanism& mechanism, Evaluation<double>& e) {
   VectorXd scale(mechanism.nv()), force(mechanism.nv());
@@ -58,8 +74,7 @@ class Searcher {
     refuse_moving_loops(t, here);
     scale_ = force_scales(mechanism_, e_);
     const double fastest = here.udot.cwiseQuotient(unit_).cwiseAbs().maxCoeff();
-    natural_ = scale_.cwiseQuotient(inertia(t, q)).cwiseQuotient(unit_).maxCoeff();
-    natural_ = std::max({natural_, fastest, 1e-12});
+    natural_ = std::max({natural(t, q), fastest, 1e-12});
     mu_ = std::max(fastest, floor());
     here.left = measure(here);
     soften(t, q);
@@ -116,12 +131,16 @@ class Searcher {
   double measure(const Pose& p) const {
     return p.force.size() > 0 ? p.force.cwiseQuotient(scale_).cwiseAbs().maxCoeff() : 0;
   }
-  VectorXd inertia(double t, const VectorXd& q) {
-    VectorXd diagonal(mechanism_.nv());
+  /// Force over inertia of the joint where that is most [1/s²].
+  double natural(double t, const VectorXd& q) {
+    VectorXd inertia(mechanism_.nv());
     e_.place(t, q.data());
-    e_.mass_diagonal(diagonal.data());
-    const double largest = diagonal.maxCoeff();
-    return diagonal.cwiseMax(1e-12 * largest);
+    e_.mass_diagonal(inertia.data());
+    const VectorXd massless = massless_up_to(mechanism_);
+    double most = 0;
+    for (Eigen::Index i = 0; i < inertia.size(); ++i)
+      if (inertia[i] > massless[i]) most = std::max(most, scale_[i] / (inertia[i] * unit_[i]));
+    return most;
   }
   double floor() const { return neutral_floor * natural_; }
 
@@ -164,6 +183,13 @@ class Searcher {
     return part_ * delta;
   }
 
+  /// How far V − T₀ falls from here to there; of forces without a potential, the work that all of
+  /// them do on the way, by the trapezoidal rule. What brings the pose back to Φ = 0 lies across
+  /// the forces left, and does none.
+  double fall(const Pose& here, const Pose& there, const VectorXd& delta) const {
+    return potential_ ? here.merit - there.merit : 0.5 * delta.dot(here.force + there.force);
+  }
+
   /// One step downhill. μ follows how well V − T₀ falls as its second-order part foretells.
   bool settle(double t, Pose& here) {
     constexpr int most_tries = 60;
@@ -174,14 +200,14 @@ class Searcher {
       VectorXd q;
       if (delta.size() == 0 || !poses_.move(t, here.q, delta, q)) continue;
       const double work = delta.dot(here.force);
-      if (potential_ && !(work > 0)) continue;
+      if (!(work > 0)) continue;
       // δᵀKδ follows from the step's own equation, shortened to `part_` of it.
       e_.place(t, here.q.data());
       const double bent = part_ * work - mu_ * delta.dot(poses_.momentum(delta));
       Pose next = look(t, q);
-      const double share = (here.merit - next.merit) / (work - 0.5 * bent);
-      const bool down = potential_ && work > rounding && share > least_share;
-      const bool level = !potential_ || next.merit <= here.merit + rounding;
+      const double fallen = fall(here, next, delta), share = fallen / (work - 0.5 * bent);
+      const bool down = work > rounding && share > least_share;
+      const bool level = fallen >= -rounding;
       if (!down && !(level && next.left < here.left)) continue;
       const bool trusted = !down || (share > good && share < 2 - good);
       here = std::move(next);
@@ -194,13 +220,13 @@ class Searcher {
   /// From a pose where the potential curves downwards: a little along the ways it does so.
   void leave_saddle(double t, Pose& here) {
     constexpr double aside = 0.05;  // [rad or lengths of the scene]
-    if (!potential_ || step(t, here, floor()).size() == 0) return;
-    const VectorXd down = ways_.find(t, here.q, here.lambda, pencil_);
+    if (step(t, here, floor()).size() == 0) return;
+    const VectorXd down = ways_.find(t, here.q, here.lambda, pencil_, potential_);
     if (down.size() == 0) return;
     VectorXd q, way = aside / down.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * down;
     for (int k = 0; k < 6; ++k, way *= -0.5) {
       if (!poses_.move(t, here.q, way, q)) continue;
-      if (Pose next = look(t, q); next.merit < here.merit) {
+      if (Pose next = look(t, q); fall(here, next, way) > 0) {
         here = std::move(next);
         return;
       }
@@ -302,11 +328,15 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
   force += 2 * e.kinetic() / length;  // of running drives
   for (const JointSpec& j : scene.joints) torque += std::abs(j.stiffness) * (1 + std::abs(j.rest));
   VectorXd scale(mechanism.nv());
+  const VectorXd massless = massless_up_to(mechanism);
   e.mass_diagonal(scale.data());
   for (const Tree::Body& b : mechanism.tree().bodies)
     for (int i = 0; i < b.nv; ++i) {
       double& s = scale[b.u + i];  // M_ii
-      const double lever = b.is_length(i) ? 1 : mass > 0 ? std::sqrt(std::max(s, 0.0) / mass) : 1;
+      const double lever = b.is_length(i)             ? 1
+                           : !(s > massless[b.u + i]) ? length
+                           : mass > 0                 ? std::sqrt(s / mass)
+                                                      : 1;
       s = std::max({force * lever + torque, 1e-12 * s, 1e-30});
     }
   return scale;

@@ -2,6 +2,7 @@
 #include <momenta/dae/report/linear_report.h>
 #include <momenta/dae/text/number_text.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -60,11 +61,17 @@ std::string numbers_of(const MatrixXd& a, Eigen::Index i, const char* between) {
 }  // namespace
 
 std::string linear_table(const LinearModel& m) {
+  constexpr double rounding = 1e-6;  // of the largest: a double zero is split by its root
+  const double largest = m.poles.size() > 0 ? m.poles.cwiseAbs().maxCoeff() : 0;
+  const auto growing =
+      std::count_if(m.poles.begin(), m.poles.end(),
+                    [&](const std::complex<double>& s) { return s.real() > rounding * largest; });
   std::string text =
       (m.scene.empty() ? "" : m.scene + ": ") + "linear model (" + word_for(m.kind) +
       ") about the state at t = " + compact(m.t, 6) + " s: " + how_many(m.states.size(), "state") +
       ", " + how_many(m.inputs.size(), "input") + ", " + how_many(m.outputs.size(), "output") +
-      ", " + how_many(static_cast<std::size_t>(m.poles.size()), "pole") + ".\n";
+      ", " + how_many(static_cast<std::size_t>(m.poles.size()), "pole") +
+      (growing > 0 ? ", " + std::to_string(growing) + " of them growing.\n" : ".\n");
   if (!m.left_out.empty()) {
     text += "Loop equations that follow from others: ";
     for (std::size_t i = 0; i < m.left_out.size(); ++i)

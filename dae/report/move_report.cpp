@@ -1,3 +1,4 @@
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/move_report.h>
@@ -61,40 +62,28 @@ std::string advantage_heading(const MoveResult& r) {
   return output(r).name + ".advantage [" + swept(r).unit + "/" + output(r).unit + "]";
 }
 
-/// Poses where a number of theirs is least and greatest; null where it is none everywhere.
-template <class Value>
-std::pair<const MovedPose*, const MovedPose*> extremes_of(const MoveResult& r, Value value) {
-  const MovedPose *least = nullptr, *most = nullptr;
-  for (const MovedPose& pose : r.poses) {
-    const double x = value(pose);
-    if (std::isnan(x)) continue;
-    if (!least || x < value(*least)) least = &pose;
-    if (!most || x > value(*most)) most = &pose;
-  }
-  return {least, most};
-}
-
-std::string place_of(const MoveResult& r, const MovedPose& pose) {
-  return swept(r).name + " = " + compact(r.start + pose.s, 5) + " " + swept(r).unit;
+std::string place_of(const MoveResult& r, const MoveResult::Extreme& at) {
+  return swept(r).name + " = " + compact(r.start + at.s, 5) + " " + swept(r).unit;
 }
 
 /// Where it comes to rest, and how well force is passed to the output.
 std::string transmission_in_words(const MoveResult& r) {
   if (r.output < 0) return "";
-  const auto angle = [](const MovedPose& pose) { return pose.transmission_angle; };
-  const auto degrees = [&](const MovedPose& pose) {
-    return compact(angle(pose) * 180 / std::numbers::pi, 4) + "° at " + place_of(r, pose);
+  const auto degrees = [&](const MoveResult::Extreme& at) {
+    return compact(at.value * 180 / std::numbers::pi, 4) + "° at " + place_of(r, at);
   };
-  const auto [least, most] = extremes_of(r, angle);
-  std::string text = least ? "The transmission angle of " + output(r).name + " is least, " +
-                                 degrees(*least) + ", and largest, " + degrees(*most) + "."
-                           : "No one point of the output link of " + output(r).name +
-                                 " takes the whole force: it has no transmission angle.";
-  const auto hardest = extremes_of(r, [](const MovedPose& p) { return p.joint_force; }).second;
-  if (hardest)
+  std::string text = std::isnan(r.passed.least_angle.value)
+                         ? "No one point of the output link of " + output(r).name +
+                               " takes the whole force: it has no transmission angle."
+                         : "The transmission angle of " + output(r).name + " is least, " +
+                               degrees(r.passed.least_angle) + ", and largest, " +
+                               degrees(r.passed.largest_angle) + ".";
+  const MoveResult::Extreme& hardest = r.passed.largest_force;
+  if (!std::isnan(hardest.value))
     text += " The largest joint force for " +
             std::string(output(r).unit == "rad" ? "1 N m" : "1 N") + " on it is " +
-            compact(hardest->joint_force, 4) + " N, at " + place_of(r, *hardest) + ".";
+            (std::isinf(hardest.value) ? "without bound" : compact(hardest.value, 4) + " N") +
+            ", at " + place_of(r, hardest) + ".";
   return text;
 }
 
@@ -142,7 +131,8 @@ std::string move_in_words(const MoveResult& r) {
   std::string text = c.name;
   if (goes_round)
     text += " goes round";
-  else if (r.dead_points() > 0)
+  else if (r.dead_points() > 0 ||
+           (r.end == MoveResult::End::closed && std::abs(r.poses.back().s) < 1e-6))
     text += " swings between " + compact(reach.least, 6) + " and " + compact(reach.most, 6) + unit;
   else
     text += " goes from " + compact(r.start, 6) + " to " + compact(r.start + r.poses.back().s, 6) +
@@ -154,6 +144,9 @@ std::string move_in_words(const MoveResult& r) {
           : r.end == MoveResult::End::reached ? "."
                                               : "; it stopped: " + r.why + ".";
   text += dead_points_in_words(r);
+  if (!r.idle.empty())
+    text += " Nothing depends on the turn of " + reading::all_in_quotes(r.idle) +
+            " between two balls: it is held.";
   if (r.change_points() > 0)
     text += " At a change point another assembly is as near: it was passed straight on.";
   return text;
@@ -231,17 +224,17 @@ Json move_json(const MoveResult& r) {
   Json passed;
   if (r.output >= 0) {
     passed["coordinate"] = output(r).label();
-    const auto add = [&](const std::string& name, auto value) {
-      const auto [least, most] = extremes_of(r, value);
+    const auto add = [&](const std::string& name, const MoveResult::Extreme& least,
+                         const MoveResult::Extreme& most) {
       Json& entry = passed[name];
-      if (!least) return;
-      entry = {{"least", number_or_null(value(*least))},
-               {"least_at", number_or_null(r.start + least->s)},
-               {"most", number_or_null(value(*most))},
-               {"most_at", number_or_null(r.start + most->s)}};
+      if (std::isnan(least.value)) return;
+      entry = {{"least", number_or_null(least.value)},
+               {"least_at", number_or_null(r.start + least.s)},
+               {"most", number_or_null(most.value)},
+               {"most_at", number_or_null(r.start + most.s)}};
     };
-    add("transmission_angle", [](const MovedPose& pose) { return pose.transmission_angle; });
-    add("joint_force", [](const MovedPose& pose) { return pose.joint_force; });
+    add("transmission_angle", r.passed.least_angle, r.passed.largest_angle);
+    add("joint_force", r.passed.least_force, r.passed.largest_force);
   }
   return {{"scene", r.scene},
           {"output", passed},
@@ -249,6 +242,7 @@ Json move_json(const MoveResult& r) {
           {"start", number_or_null(r.start)},
           {"end", name_of(r.end)},
           {"why", r.why.empty() ? Json() : Json(r.why)},
+          {"idle", r.idle},
           {"displacement", number_or_null(r.poses.empty() ? none : r.poses.back().s)},
           {"poses", r.poses.size()},
           {"reach", reach},

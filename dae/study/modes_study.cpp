@@ -104,13 +104,17 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
     result.spectrum = spectrum(mechanism, at, request.count, request.route);
     const auto& modes = result.spectrum.modes;
     if (request.search != Search::settle || at.steps == 0 || saddles == most_saddles ||
-        !has_potential(mechanism) || modes.empty() || !(modes.front().s.real() > 0))
+        modes.empty() || !(modes.front().s.real() > 0) ||
+        (!has_potential(mechanism) && modes.front().kind() != Mode::Kind::growth))
       break;
     VectorXd way = modes.front().shape.real();
     way *= aside / largest_in_units(mechanism, way);
     const int steps = at.steps;
+    const VectorXd saddle = at.q;
     at = settle_from(mechanism, at, way);
     at.steps += steps;
+    // It grows, but not downhill: a damper of negative value, say.
+    if ((at.q - saddle).cwiseAbs().maxCoeff() < 1e-3 * aside) saddles = most_saddles - 1;
   }
   if (start.q.size() > 0) at.moved = (at.q - start.q).cwiseAbs().maxCoeff();
   // Rates of drives show in what prescribed motion alone moves.

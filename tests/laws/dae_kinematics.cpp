@@ -8,6 +8,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kinematics/move.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -234,6 +235,217 @@ TEST(Kinematics, ChangePointsArePassedStraightOn) {
         EXPECT_NEAR(std::remainder(pose.q[0], pi), 0, 1e-6);
       else
         EXPECT_NEAR(std::abs(pose.u[1]), 1, 1e-6);
+    }
+  }
+}
+
+// A neutral linkage, whose shortest and longest links together are as long as the other two: flat
+// at θ = π, where it may fold over. The curve crosses there from one side to the other and comes
+// back by a second turn, at whatever steps.
+TEST(Kinematics, NeutralLinkagesCrossWhereTheyAreFlat) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(0.5, 1.5);
+  for (int k = 0; k < 8; ++k) {
+    const double crank = 0.3 + 0.02 * k, coupler = any(random), rocker = any(random);
+    const FourBar bars{crank, coupler, rocker, coupler + rocker - crank};
+    const int side = k % 2 == 0 ? 1 : -1;
+    MoveRequest request;
+    request.by = std::array{0.0, 0.3, 0.01, 1.0}[static_cast<std::size_t>(k % 4)];
+    const MoveResult r = moved(bars.scene(1, side), "O", request);
+    ASSERT_EQ(r.end, MoveResult::End::closed) << k << r.why;
+    EXPECT_EQ(r.dead_points(), 0);
+    ASSERT_EQ(r.change_points(), 2) << k;
+    EXPECT_NEAR(r.poses.back().s, 4 * pi, 1e-6);
+    expect_in_order(r);
+    const int branch = r.poses.front().branch;
+    for (const MovedPose& pose : r.poses) {
+      if (pose.kind == MovedPose::Kind::change_point) {
+        EXPECT_NEAR(std::remainder(pose.q[0] - pi, 2 * pi), 0, 1e-9);
+        continue;
+      }
+      const int there = pose.branch == branch ? side : -side;
+      EXPECT_EQ(pose.branch == branch, pose.s < pi - 1 || pose.s > 3 * pi - 1) << pose.s;
+      const auto off = [&](int on) {
+        return std::abs(std::remainder(pose.q[2] - bars.rocker_angle(pose.q[0], on), 2 * pi));
+      };
+      if (off(1) + off(-1) > 1e-5) {
+        EXPECT_LT(off(there), off(-there)) << pose.s;
+      }
+    }
+  }
+}
+
+// As little as 1e-5 beside a neutral one: the crank goes round on its side, or turns back where the
+// law of cosines says.
+TEST(Kinematics, BesideNeutralLinkagesTheCurveKeepsItsSide) {
+  for (const double off : {-1e-5, -1e-7, 1e-4, 1e-6}) {
+    const FourBar bars{0.4, 1, 0.8, 1.4 + off};
+    const MoveResult r = moved(bars.scene(1, 1), "O");
+    ASSERT_EQ(r.end, MoveResult::End::closed) << off << r.why;
+    EXPECT_EQ(r.change_points(), 0);
+    EXPECT_EQ(r.dead_points(), off < 0 ? 0 : 2) << off;
+    if (off < 0) {
+      EXPECT_NEAR(r.poses.back().s, 2 * pi, 1e-9);
+      continue;
+    }
+    const double d = bars.ground, turns = std::acos((0.16 + d * d - 3.24) / (0.8 * d));
+    EXPECT_NEAR(r.reach[0].most, turns, 1e-8);
+    EXPECT_NEAR(r.reach[0].least, -turns, 1e-8);
+  }
+}
+
+/// Crank, rod and a slide along x through O; in line at the start.
+Scene in_line(double crank, double rod) {
+  Scene s;
+  s.name = "slider-crank";
+  s.bodies = {equations::rod("crank"), equations::rod("rod"), equations::rod("piston")};
+  s.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, 0),
+              equations::hinge("A", "crank", "rod", {crank, 0, 0}, 0),
+              equations::hinge("P", "ground", "piston", {0, 0, 0}, crank + rod)};
+  s.joints[2].kind = JointKind::prismatic;
+  s.joints[2].axis = {1, 0, 0};
+  LoopSpec loop;
+  loop.name = "B";
+  loop.kind = LoopKind::revolute;
+  loop.parent = "rod";
+  loop.child = "piston";
+  loop.origin_parent = {rod, 0, 0};
+  s.loops.push_back(loop);
+  return s;
+}
+
+// Swept from a dead point, the slide comes back to it by the other one. Where the rod is as long as
+// the crank it passes O, where the crank may turn alone.
+TEST(Kinematics, ACurveMayStartAtADeadPoint) {
+  for (const double by : {0.0, 0.3}) {
+    MoveRequest request;
+    request.by = by;
+    const MoveResult r = moved(in_line(0.3, 0.8), "P", request);
+    ASSERT_EQ(r.end, MoveResult::End::closed) << r.why;
+    EXPECT_EQ(r.dead_points(), 2);
+    EXPECT_NEAR(r.reach[2].least, 0.5, 1e-12);
+    EXPECT_NEAR(r.reach[2].most, 1.1, 1e-12);
+    const MoveResult equal = moved(in_line(0.8, 0.8), "P", request);
+    ASSERT_EQ(equal.end, MoveResult::End::closed) << equal.why;
+    EXPECT_EQ(equal.dead_points(), 2);
+    EXPECT_EQ(equal.change_points(), 2);
+    EXPECT_NEAR(equal.reach[2].least, -1.6, 1e-12);
+  }
+}
+
+TEST(Kinematics, WhatIsNotReachedIsSaid) {
+  MoveRequest request;
+  request.to = 1.2;
+  const MoveResult r = moved(in_line(0.3, 0.8), "P", request);
+  EXPECT_EQ(r.end, MoveResult::End::stopped);
+  EXPECT_NE(r.why.find("does not come to 1.2"), std::string::npos) << r.why;
+}
+
+// Peaucellier's straight-line linkage ends where its two arms lie on each other, at |OC| = 1 − 0.4:
+// two ranks are lost at once there, and the crank turns back.
+TEST(Kinematics, SingularEndsAreFoundAtEveryStep) {
+  const double arm = 1, side = 0.4, crank = 0.35, theta = 0.5;
+  const double C = 2 * crank * std::cos(theta / 2), half = theta / 2,
+               opens = std::acos((C * C + arm * arm - side * side) / (2 * C * arm));
+  Scene s;
+  s.name = "Peaucellier";
+  for (const char* name : {"crank", "oa", "ob", "ac", "ad", "bc", "bd"})
+    s.bodies.push_back(equations::rod(name));
+  const auto point = [](double length, double angle) {
+    return Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle));
+  };
+  const auto angle = [](const Eigen::Vector2d& x) { return std::atan2(x.y(), x.x()); };
+  const Eigen::Vector2d A = point(arm, half + opens), B = point(arm, half - opens),
+                        c = point(C, half), D = A + B - c;
+  s.joints = {equations::hinge("O", "ground", "crank", {crank, 0, 0}, theta),
+              equations::hinge("oa", "ground", "oa", {0, 0, 0}, half + opens),
+              equations::hinge("ob", "ground", "ob", {0, 0, 0}, half - opens),
+              equations::hinge("ac", "oa", "ac", {arm, 0, 0}, angle(c - A) - half - opens),
+              equations::hinge("ad", "oa", "ad", {arm, 0, 0}, angle(D - A) - half - opens),
+              equations::hinge("bc", "ob", "bc", {arm, 0, 0}, angle(c - B) - half + opens),
+              equations::hinge("bd", "ob", "bd", {arm, 0, 0}, angle(D - B) - half + opens)};
+  const auto pin = [&](const char* name, const char* parent, const char* child, double at,
+                       double there) {
+    LoopSpec loop;
+    loop.name = name;
+    loop.kind = LoopKind::revolute;
+    loop.parent = parent;
+    loop.child = child;
+    loop.origin_parent = {at, 0, 0};
+    loop.origin_child = {there, 0, 0};
+    s.loops.push_back(loop);
+  };
+  pin("C", "crank", "ac", crank, side);
+  pin("C2", "crank", "bc", crank, side);
+  pin("D", "ad", "bd", side, side);
+  for (const double by : {0.0, 0.01, 0.3}) {
+    MoveRequest request;
+    request.by = by;
+    const MoveResult r = moved(s, "O", request);
+    ASSERT_EQ(r.end, MoveResult::End::closed) << by << r.why;
+    EXPECT_GE(r.change_points(), 2) << by;
+    const double end = 2 * std::acos((arm - side) / (2 * crank));
+    EXPECT_NEAR(r.reach[0].most, end, 1e-9);
+    EXPECT_NEAR(r.reach[0].least, -end, 1e-9);
+  }
+}
+
+// A coupler between two balls spins as it likes: that is held. The crank goes round once, and the
+// rocker swings between the angles at which its ball is as far from the crank's circle as the
+// coupler is long.
+TEST(Kinematics, IdleSpinsOfCouplersAreHeld) {
+  const std::string text = R"(
+[[body]]
+name = "crank"
+mass = 1
+shape = { kind = "rod", length = 0.2 }
+[[body]]
+name = "rod"
+mass = 1
+shape = { kind = "rod", length = 0.9 }
+[[body]]
+name = "rocker"
+mass = 1
+shape = { kind = "rod", length = 0.5 }
+[[joint]]
+name = "O"
+kind = "revolute"
+child = "crank"
+[[joint]]
+name = "S1"
+kind = "spherical"
+parent = "crank"
+child = "rod"
+origin = { parent = [0.2, 0, 0] }
+[[joint]]
+name = "C"
+kind = "revolute"
+child = "rocker"
+origin = { parent = [0.7, 0.3, 0.1] }
+axis = "y"
+position = -1
+[[loop]]
+name = "S2"
+kind = "spherical"
+parent = "rod"
+child = "rocker"
+origin = { parent = [0.9, 0, 0], child = [0.5, 0, 0] }
+[assembly]
+hold = ["O"]
+)";
+  const Scene scene = parse_scene(text, "RSSR");
+  MoveRequest request;
+  for (const std::string hold : {"", "S1.wx"}) {
+    request.hold.clear();
+    if (!hold.empty()) request.hold = {hold};
+    const MoveResult r = moved(scene, "O", request);
+    ASSERT_EQ(r.end, MoveResult::End::closed) << r.why;
+    EXPECT_EQ(r.idle, hold.empty() ? std::vector<std::string>{"S1"} : std::vector<std::string>());
+    const auto rocker = static_cast<Eigen::Index>(r.poses.front().q.size() - 1);
+    for (const MovedPose& pose : r.poses) {
+      const Eigen::Vector3d crank(0.2 * std::cos(pose.q[0]), 0.2 * std::sin(pose.q[0]), 0),
+          ball(0.7 + 0.5 * std::cos(pose.q[rocker]), 0.3, 0.1 - 0.5 * std::sin(pose.q[rocker]));
+      EXPECT_NEAR((crank - ball).norm(), 0.9, 1e-9);
     }
   }
 }

@@ -79,7 +79,8 @@ TEST(TransmissionAngle, OfFourBarsByTrigonometry) {
       const double far = std::hypot(a * std::cos(crank) - d, a * std::sin(crank));
       const double cosine = (b * b + c * c - far * far) / (2 * b * c);
       if (pose.kind == MovedPose::Kind::dead_point) {
-        EXPECT_TRUE(std::isnan(pose.transmission_angle)) << pose.transmission_angle;
+        EXPECT_EQ(pose.transmission_angle, 0);
+        EXPECT_TRUE(std::isinf(pose.joint_force));
         continue;
       }
       if (std::abs(cosine) > 0.9999) continue;
@@ -87,6 +88,27 @@ TEST(TransmissionAngle, OfFourBarsByTrigonometry) {
       EXPECT_NEAR(pose.transmission_angle, mu, 1e-7 / std::sin(mu)) << cut_at_a;
       EXPECT_NEAR(pose.joint_force * c * std::sin(mu), 1, 1e-6 / std::sin(mu));
     }
+  }
+}
+
+// Extremes lie between rows: of a crank-rocker at θ = 0 and π, and where coupler and rocker are
+// square; of a linkage with dead points at these.
+TEST(TransmissionAngle, ExtremesAreLocatedAtEveryStep) {
+  const double a = 1, b = 2, c = 1.8, d = 2.2;
+  const auto mu = [&](double far) {
+    return std::acos(std::abs(b * b + c * c - far * far) / (2 * b * c));
+  };
+  for (const double by : {0.37, 0.05}) {
+    const MoveResult r = moved(four_bar(a, b, c, d, 0.9, false), "O", "C", by);
+    EXPECT_NEAR(r.passed.least_angle.value, std::min(mu(d - a), mu(d + a)), 1e-9);
+    EXPECT_NEAR(r.passed.largest_angle.value, pi / 2, 1e-7);
+    EXPECT_NEAR(r.passed.largest_force.value, 1 / (c * std::sin(r.passed.least_angle.value)), 1e-8);
+    const MoveResult dead = moved(four_bar(1.5, 1, 0.8, 1.2, 0.6, false), "O", "C", by);
+    ASSERT_EQ(dead.dead_points(), 2);
+    EXPECT_EQ(dead.passed.least_angle.value, 0);
+    EXPECT_TRUE(std::isinf(dead.passed.largest_force.value));
+    EXPECT_NEAR(std::abs(dead.start + dead.passed.least_angle.s),
+                std::acos((2.25 + 1.44 - 3.24) / 3.6), 1e-9);
   }
 }
 

@@ -136,6 +136,83 @@ TEST(Modes, UprightIsASaddleThatNewtonFindsAndSettlingLeaves) {
   }
 }
 
+// What a formula adds has no potential that is known: the way is downhill all the same.
+TEST(Modes, SettlingGoesDownhillWithForcesOfAnyLaw) {
+  for (const std::string law : {"0*t", "-0.3*u", "0.1*sin(3*t)"}) {
+    const ModesResult r = modes_of(rod + R"(position = 1
+[[force]]
+kind = "torque"
+joint = "O"
+law = ")" + law + "\"\n");
+    EXPECT_STREQ(r.nature(), "stable") << law;
+    EXPECT_NEAR(std::remainder(r.equilibrium.q[0] + pi / 2, 2 * pi), 0, 1e-10) << law;
+  }
+  // A torque that holds it aside: 2 g/4 cos q = 3.
+  const ModesResult aside = modes_of(rod + R"(position = 1.4
+[[force]]
+kind = "torque"
+joint = "O"
+law = "3 - 0.1*u"
+)");
+  EXPECT_STREQ(aside.nature(), "stable");
+  EXPECT_NEAR(std::remainder(aside.equilibrium.q[0] + std::acos(6 / g), 2 * pi), 0, 1e-10);
+}
+
+// A crank on a spring, a piston, and between them a rod that has no mass or next to none: with
+// x = 0.3 cos θ + √(0.64 − 0.09 sin²θ), V = ½ 20 (θ − 1.3)² + g 0.15 sin θ and
+// M = 0.03 + ½ (dx/dθ)², of which the least V is at 2.4057 Hz.
+TEST(Modes, OfALinkageWithAMasslessRod) {
+  for (const std::string mass : {"0", "1e-9", "1e-6"}) {
+    const ModesResult r = modes_of(R"(
+gravity = [0, -9.81, 0]
+[[body]]
+name = "crank"
+mass = 1
+shape = { kind = "rod", length = 0.3 }
+[[body]]
+name = "rod"
+mass = )" + mass + (mass == "0" ? "" : "\nshape = { kind = \"rod\", length = 0.8 }") +
+                                   R"(
+[[body]]
+name = "piston"
+mass = 0.5
+shape = { kind = "point" }
+[[joint]]
+name = "O"
+kind = "revolute"
+child = "crank"
+position = 1
+stiffness = 20
+rest = 1.3
+[[joint]]
+name = "A"
+kind = "revolute"
+parent = "crank"
+child = "rod"
+origin = { parent = [0.3, 0, 0] }
+position = -1.3
+[[joint]]
+name = "P"
+kind = "prismatic"
+child = "piston"
+axis = "x"
+position = 0.9
+[[loop]]
+name = "B"
+kind = "revolute"
+parent = "rod"
+child = "piston"
+origin = { parent = [0.8, 0, 0] }
+)");
+    const double theta = r.equilibrium.q[0], sine = std::sin(theta), cosine = std::cos(theta),
+                 slope = -0.3 * sine - 0.09 * sine * cosine / std::sqrt(0.64 - 0.09 * sine * sine);
+    EXPECT_NEAR(20 * (theta - 1.3) + g * 0.15 * cosine, 0, 1e-5) << mass;
+    const double omega = std::sqrt((20 - g * 0.15 * sine) / (0.03 + 0.5 * slope * slope));
+    expect_frequencies(r, {omega}, 1e-5);
+    EXPECT_NEAR(r.spectrum.modes[0].frequency(), 2.4057, 1e-4);
+  }
+}
+
 TEST(Modes, OfAChainOfMassesAndSprings) {
   constexpr int n = 7;
   constexpr double m = 0.3, k = 50;

@@ -1,0 +1,94 @@
+#include <momenta/dae/dense/decompositions.h>
+#include <momenta/dae/dense/least_squares.h>
+#include <momenta/dae/kinematics/change_point.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double near_by = 0.3;     // how far a change point is looked for [units]
+constexpr double seems_lost = 0.2;  // singular values that may vanish there, beside the first
+constexpr double rank_is_lost = 1e-7, rank_is_kept = 1e-4;  // the same at a change point
+constexpr double closes_all = 1e-10;  // |F|∞ in units, at the most, of curves that cross
+
+/// Newton's method for ∂β/∂y = 0 from `at`; false where it does not end near by, or where other
+/// ranks than k are lost there.
+bool lose_ranks(PoseCurve& curve, Eigen::Index k, CurvePoint& at) {
+  constexpr int most_steps = 25;
+  constexpr double difference = 1e-5, settled = 1e-9;
+  const CurvePoint start = at;
+  VectorXd residual;
+  MatrixXd J, ahead, behind;
+  DenseLeastSquares least;
+  double before = near_by;
+  for (int pass = 0; pass < most_steps; ++pass) {
+    curve.linearise(at, residual, J);
+    const Eigen::BDCSVD<MatrixXd> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const VectorXd& values = svd.singularValues();
+    const Eigen::Index n = values.size(), kept = n - k;
+    if (kept > 0 && !(values[kept - 1] > rank_is_kept * values[0])) return false;
+    const MatrixXd psi = svd.matrixU().rightCols(k), ways = svd.matrixV().rightCols(k + 1);
+    const auto turned = [&](const VectorXd& way) -> MatrixXd {  // ψᵀ ∂J/∂x(way) T
+      VectorXd unused;
+      curve.linearise(curve.moved(at, difference * way), unused, ahead);
+      curve.linearise(curve.moved(at, -difference * way), unused, behind);
+      return psi.transpose() * (ahead - behind) * ways / (2 * difference);
+    };
+    VectorXd step = VectorXd::Zero(n + 1);
+    MatrixXd slope = psi.transpose() * J * ways;
+    if (kept > 0) {
+      step = -svd.matrixV().leftCols(kept) *
+             (svd.matrixU().leftCols(kept).transpose() * residual).cwiseQuotient(values.head(kept));
+      if (step.norm() > 0) slope += turned(step);
+    }
+    MatrixXd bends(k * (k + 1), k + 1);
+    for (Eigen::Index i = 0; i <= k; ++i) bends.col(i) = turned(ways.col(i)).reshaped();
+    least.compute(bends, rank_is_lost);
+    step -= ways * least.solve(VectorXd(slope.reshaped()));
+    const double size = step.norm();
+    if (!(size < near_by)) return false;
+    at = curve.moved(at, step);
+    if (!(curve.way(start, at).norm() < near_by)) return false;
+    if (size < settled && !(size < 0.1 * before)) return values[n - k] < rank_is_lost * values[0];
+    before = size;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool change_point_near(PoseCurve& curve, const CurvePoint& near, CurvePoint& at) {
+  VectorXd residual;
+  MatrixXd J;
+  curve.linearise(near, residual, J);
+  const VectorXd values = Eigen::BDCSVD<MatrixXd>(J).singularValues();
+  for (Eigen::Index k = 1; k <= values.size() && values[values.size() - k] < seems_lost * values[0];
+       ++k) {
+    at = near;
+    if (!lose_ranks(curve, k, at)) continue;
+    return curve.linearise(at, residual, J) <= closes_all &&
+           curve.reciprocal_condition(at.q) < rank_is_lost;
+  }
+  return false;
+}
+
+void go_straight_across(PoseCurve& curve, const CurvePoint& from, CurvePoint& at) {
+  // By the parabola through both that is tangent at `from`, then by differences along the curve.
+  constexpr double distinct = 1e-4;
+  const VectorXd chord = curve.way(from, at);
+  at.tangent = chord.norm() > distinct ? 2 * chord.normalized() - from.tangent : from.tangent;
+  at.tangent.normalize();
+  at.orientation = 0;
+  at.pivot = 0;
+  CurvePoint ahead, behind;
+  for (const double h : {1e-2, 1e-3})
+    if (curve.step(at, h, ahead) && curve.step(at, -h, behind))
+      at.tangent = curve.way(behind, ahead).normalized();
+}
+
+}  // namespace momenta

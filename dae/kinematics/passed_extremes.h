@@ -1,0 +1,38 @@
+#pragma once
+// Extremes of what is passed to an output along a curve of poses, located between its points, not
+// read off them; and its limits at dead points. There the effort that holds a unit effort on the
+// output is infinite, and so is a force f that takes it: with power f·v = 1 of the output at unit
+// rate, sin μ = 1/(|f| |v|) = 0. Where f takes no part in what is infinite, μ has another limit.
+
+#include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/kinematics/pose_curve.h>
+#include <momenta/dae/kinematics/transmission.h>
+
+#include <optional>
+
+namespace momenta {
+
+class PassedExtremes {
+ public:
+  /// Both must outlive it. @param unit of s on the curve [rad or m]
+  PassedExtremes(Transmission& transmission, double unit, MoveResult::Passed& found)
+      : transmission_(transmission), unit_(unit), found_(found) {}
+  /// The next point of the curve; what it passes.
+  Transmitting pass(PoseCurve& curve, const CurvePoint& at, bool is_dead_point);
+
+ private:
+  struct Seen {
+    CurvePoint at;
+    Transmitting passed;
+  };
+  Transmitting limit(PoseCurve& curve, const CurvePoint& at);
+  void locate(PoseCurve& curve, const Seen& next);
+  void widen(const CurvePoint& at, const Transmitting& passed);
+
+  Transmission& transmission_;
+  double unit_;
+  MoveResult::Passed& found_;
+  std::optional<Seen> before_, last_;
+};
+
+}  // namespace momenta
