@@ -378,11 +378,10 @@ RealVector DenseLagrangian::accelerations(Real t, const Eigen::VectorXd& q,
                                         Eigen::Map<const RealVector>(bias.data(), nv_));
 }
 
-RealVector DenseLagrangian::momentum_rates(Real t, const Eigen::VectorXd& q,
-                                           const Eigen::VectorXd& u) const {
-  using D = Dual<Real, 1>;
-  const RealVector udot = accelerations(t, q, u), qdot = coordinate_rates_at(q, u);
-  List<D> q_along(static_cast<std::size_t>(nq_)), u_along(static_cast<std::size_t>(nv_));
+auto DenseLagrangian::along(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                            const RealVector& udot) const -> std::pair<List<D1>, List<D1>> {
+  const RealVector qdot = coordinate_rates_at(q, u);
+  List<D1> q_along(static_cast<std::size_t>(nq_)), u_along(static_cast<std::size_t>(nv_));
   for (int i = 0; i < nq_; ++i) {
     q_along[static_cast<std::size_t>(i)].a = q[i];
     q_along[static_cast<std::size_t>(i)].b[0] = qdot[i];
@@ -391,6 +390,25 @@ RealVector DenseLagrangian::momentum_rates(Real t, const Eigen::VectorXd& q,
     u_along[static_cast<std::size_t>(i)].a = u[i];
     u_along[static_cast<std::size_t>(i)].b[0] = udot[i];
   }
+  return {q_along, u_along};
+}
+
+Real DenseLagrangian::energy(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) const {
+  const List<Real> at = real(q);
+  return kinetic_energy(t, at, real(u)) + potential_energy(t, at);
+}
+
+Real DenseLagrangian::energy_rate(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                                  const RealVector& udot) const {
+  const auto [q_along, u_along] = along(q, u, udot);
+  const D1 clock = D1::variable(t, 0);
+  return kinetic_energy(clock, q_along, u_along).b[0] + potential_energy(clock, q_along).b[0];
+}
+
+RealVector DenseLagrangian::momentum_rates(Real t, const Eigen::VectorXd& q,
+                                           const Eigen::VectorXd& u) const {
+  using D = D1;
+  const auto [q_along, u_along] = along(q, u, accelerations(t, q, u));
   const List<D> p = momenta(D::variable(t, 0), q_along, u_along);
   RealVector rates(nv_);
   for (int i = 0; i < nv_; ++i) rates[i] = p[static_cast<std::size_t>(i)].b[0];

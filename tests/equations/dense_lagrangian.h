@@ -235,6 +235,10 @@ class DenseLagrangian {
   RealVector momentum_rates(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) const;
   /// ∂L/∂q + Q (V only through Q); canonical trees: nq = nv.
   RealVector lagrange_rates(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) const;
+  /// T + V, and its rate along the motion with these u̇.
+  Real energy(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) const;
+  Real energy_rate(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                   const RealVector& udot) const;
   RealVector coordinate_rates_at(const Eigen::VectorXd& q, const Eigen::VectorXd& u) const;
   /// Force, then moment about the child's joint origin, that each joint transmits to its child, in
   /// child axes: the balance of the subtree it carries. 6 numbers a joint, in the scene's order.
@@ -243,6 +247,7 @@ class DenseLagrangian {
   List<Eigen::Isometry3d> poses(Real t, const Eigen::VectorXd& q) const;
 
  private:
+  using D1 = Dual<Real, 1>;
   struct Place {
     int parent = -1;  ///< body in the scene's order
     const JointSpec* joint = nullptr;
@@ -254,6 +259,9 @@ class DenseLagrangian {
     bool has_joint_forces() const { return nv == 1 && rates_of(joint->kind) == 1; }
   };
   static List<Real> real(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
+  /// q along q̇ = N(q) u, and u along u̇.
+  std::pair<List<D1>, List<D1>> along(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                                      const RealVector& udot) const;
   int body(const std::string& name) const { return name == "ground" ? -1 : bodies_.at(name); }
   List<Wrench<Real>> applied(const List<Moving<Real>>& bodies) const;
   /// Rates of the body momenta when u̇ is as given.

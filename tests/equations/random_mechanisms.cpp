@@ -3,6 +3,10 @@
 #include "equations/random_loops.h"
 
 #include <momenta/core/scene/drive.h>
+#include <momenta/dae/study/extremes.h>
+
+#include <cmath>
+#include <optional>
 
 namespace momenta::equations {
 namespace {
@@ -65,6 +69,36 @@ void close_any(LoopSpec& loop, const Scene& scene, const Tree& tree) {
   }
 }
 
+/// A law for the coordinate of a loop that stands at `value`: a displacement, an angle, a length or
+/// the sum of a coupler.
+void drive_from(RandomTree& random, Scene& scene, const LoopSpec& loop, double value) {
+  DriveSpec d;
+  d.loop = loop.name;
+  d.kind = "polynomial";
+  d.coefficients = {value, random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)};
+  scene.drives.push_back(d);
+}
+
+/// Whether a loop has one coordinate of its own, and where it stands once closed.
+std::optional<double> coordinate_of(const LoopSpec& loop) {
+  if (loop.kind == LoopKind::revolute || loop.kind == LoopKind::prismatic) return 0;
+  if (loop.kind == LoopKind::distance) return loop.length;
+  if (loop.kind == LoopKind::coupler) return loop.offset;
+  return std::nullopt;
+}
+
+void change_masses(RandomTree& random, Scene& scene, int decades) {
+  const double factor = std::pow(10.0, random.below(2 * decades + 1) - decades);
+  if (random.chance(0.4)) {
+    scene = in_units(std::move(scene), {1, 1, factor});
+    return;
+  }
+  BodySpec& b =
+      scene.bodies[static_cast<std::size_t>(random.below(static_cast<int>(scene.bodies.size())))];
+  b.mass *= factor;
+  b.inertia *= factor;
+}
+
 Eigen::Vector3d normal_of(const Scene& scene) {
   const auto axes = axes_at_zero(scene);
   for (const JointSpec& j : scene.joints)
@@ -120,7 +154,23 @@ Scene random_mechanism(RandomTree& random, const MechanismRecipe& recipe) {
     if (auto coupler = random_coupler(random, s)) {
       close_any(*coupler, s, tree);
       s.loops.push_back(*std::move(coupler));
+      --free;
     }
+  if (recipe.loop_drives)
+    for (const LoopSpec& loop : s.loops)
+      if (const auto value = coordinate_of(loop); value && free > 0 && random.chance(0.4)) {
+        drive_from(random, s, loop, *value);
+        if (loop.kind != LoopKind::distance && loop.kind != LoopKind::coupler) --free;
+      }
+  if (recipe.redundant && !s.loops.empty()) {
+    LoopSpec again =
+        s.loops[static_cast<std::size_t>(random.below(static_cast<int>(s.loops.size())))];
+    again.name += "again";
+    bool driven = false;
+    for (const DriveSpec& d : s.drives) driven |= d.loop + "again" == again.name;
+    if (!driven) s.loops.push_back(std::move(again));
+  }
+  if (recipe.decades > 0) change_masses(random, s, recipe.decades);
   return s;
 }
 

@@ -12,6 +12,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
+#include <limits>
 
 namespace momenta::dae_quaternions {
 namespace {
@@ -34,7 +35,7 @@ Scene tumbling() {
   return s;
 }
 
-/// Largest | |q| − 1 | over samples and quaternions.
+/// Largest | |q| − 1 | over samples and quaternions, all of them there; ∞ where one is no number.
 double worst(const Scene& scene, const std::string& form, const std::string& integrator,
              double step, double end) {
   const Mechanism mechanism(scene);
@@ -50,14 +51,19 @@ double worst(const Scene& scene, const std::string& form, const std::string& int
   request.keep_trajectory = true;
   const RunResult r = run_form(mechanism, start_of(mechanism), request);
   EXPECT_EQ(r.status, "done") << form << ", " << integrator << ": " << r.reason;
+  EXPECT_EQ(r.trajectory.rows.size(), 78u) << form << ", " << integrator;
   double off = 0;
+  long seen = 0;
   for (const auto& row : r.trajectory.rows)
     for (const auto& b : mechanism.tree().bodies)
       if (b.nq >= 4) {
         const double* q = row.data() + 1 + b.q + b.nq - 4;
-        off =
-            std::max(off, std::abs(std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3])) - 1));
+        const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+        off = std::isfinite(norm) ? std::max(off, std::abs(norm - 1))
+                                  : std::numeric_limits<double>::infinity();
+        ++seen;
       }
+  EXPECT_GE(seen, 78) << form << ", " << integrator;
   return off;
 }
 

@@ -280,6 +280,7 @@ TEST(SmallMotions, AreWhatARunDoes) {
     request.keep_trajectory = true;
     const RunResult run = run_form(mechanism, start, request);
     ASSERT_EQ(run.status, "done") << run.reason;
+    ASSERT_EQ(run.trajectory.rows.size(), 25u);
     for (const auto& row : run.trajectory.rows) {
       const VectorXcd expected = size * std::exp(mode.s * row[0]) * mode.shape;
       for (int i = 0; i < mechanism.nv(); ++i)

@@ -53,7 +53,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
     const Real size = std::max(Real(1), expected.cwiseAbs().maxCoeff());
     growth = std::max(1.0, static_cast<double>(moved.maxCoeff() / size));
   }
-  note(worst.accelerations, relative_error(udot, expected.cast<double>()) / growth);
+  note(worst.accelerations, over_growth(relative_error(udot, expected.cast<double>()), growth));
 
   // τ = M u̇ + bias − applied − joint forces vanishes
   accelerations_outward(w, u, udot.data());
@@ -84,7 +84,8 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
     pdot_along[i] = p_along[static_cast<std::size_t>(i)].b[0];
   }
   ASSERT_TRUE(equations::momentum_recursion(w, s.t, q, p.data(), again.data(), pdot.data()));
-  note(worst.momentum_rates, relative_error(pdot, pdot_along, std::max(1.0, size)) / growth);
+  note(worst.momentum_rates,
+       over_growth(relative_error(pdot, pdot_along, std::max(1.0, size)), growth));
 }
 
 template <class Space>

@@ -38,6 +38,7 @@ void compare(const Scene& scene, RandomTree& random) {
   const double growth =
       std::max(1.0, static_cast<double>(spread_by_inverse(m, p_exact).maxCoeff()) /
                         s.u.cwiseAbs().maxCoeff());
+  ASSERT_LE(growth, 1e4);
   const double tolerance = algebra_tol(2 * static_cast<int>(scene.bodies.size())) * growth;
 
   Eigen::VectorXd qdot(chain.nq()), pdot(chain.nv()), u(chain.nv()), udot(chain.nv());
@@ -52,8 +53,9 @@ void compare(const Scene& scene, RandomTree& random) {
   EXPECT_LT(relative_error(u, s.u), tolerance);
 
   ASSERT_TRUE(chain.accelerations(s.t, s.q, s.u, udot));
-  EXPECT_LT(relative_error(udot, twin.accelerations(s.t, s.q, s.u).cast<double>()),
-            tolerance * condition(chain.mass_matrix(s.t, s.q)));
+  EXPECT_LT(over_growth(relative_error(udot, twin.accelerations(s.t, s.q, s.u).cast<double>()),
+                        condition(chain.mass_matrix(s.t, s.q))),
+            tolerance);
 
   // States side by side, and quaternions of any length: R(k q) = R(q).
   StateMatrix q(chain.nq(), 11), ps(chain.nv(), 11), qdots(chain.nq(), 11), pdots(chain.nv(), 11);

@@ -48,10 +48,10 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   const RealMatrix m = twin.mass_matrix(s.t, s.q);
   const double growth = rounding_growth(m, p_exact, s.u);
   note(worst.growth, growth);
-  note(worst.rates, relative_error(qdot, qdot_twin.cast<double>()) / growth);
-  note(worst.momentum_rates, relative_error(pdot, pdot_twin.cast<double>()) / growth);
+  note(worst.rates, over_growth(relative_error(qdot, qdot_twin.cast<double>()), growth));
+  note(worst.momentum_rates, over_growth(relative_error(pdot, pdot_twin.cast<double>()), growth));
   note(worst.momenta, relative_error(momenta, p));
-  note(worst.velocities, relative_error(u, s.u) / growth);
+  note(worst.velocities, over_growth(relative_error(u, s.u), growth));
   note(worst.masses, relative_error(chain.mass_matrix(s.t, s.q), m.cast<double>()));
 
   const std::vector<Real> q_list(s.q.data(), s.q.data() + s.q.size());

@@ -48,8 +48,8 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
         spread_by_inverse(m.cast<long double>(), p.cast<long double>()).maxCoeff());
   ASSERT_TRUE(planar.rates(s.t, s.q, p, qdot, pdot));
   ASSERT_TRUE(spatial.rates(s.t, s.q, p, qdot_spatial, pdot_spatial));
-  note(worst.rates, relative_error(qdot, qdot_spatial) / growth);
-  note(worst.rates, relative_error(pdot, pdot_spatial) / growth);
+  note(worst.rates, over_growth(relative_error(qdot, qdot_spatial), growth));
+  note(worst.rates, over_growth(relative_error(pdot, pdot_spatial), growth));
 
   ASSERT_TRUE(planar.accelerations(s.t, s.q, s.u, qdot));
   ASSERT_TRUE(spatial.accelerations(s.t, s.q, s.u, qdot_spatial));
@@ -61,7 +61,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
                               (m.cwiseAbs() * qdot_spatial.cwiseAbs()).cast<long double>())
                 .maxCoeff()) /
         std::max(1.0, qdot_spatial.cwiseAbs().maxCoeff());
-  note(worst.accelerations, relative_error(qdot, qdot_spatial) / acceleration_growth);
+  note(worst.accelerations, over_growth(relative_error(qdot, qdot_spatial), acceleration_growth));
 
   const double size = std::abs(spatial.energies(s.t, s.q, s.u).hamiltonian) +
                       std::abs(spatial.energies(other.t, other.q, other.u).hamiltonian);
@@ -92,7 +92,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
     EXPECT_LT(std::abs(f.z()) + n_found.head<2>().norm(),
               algebra_tol(12) * std::max(1.0, all.cwiseAbs().maxCoeff()));
   }
-  note(worst.reactions, relative_error(all, twins) / acceleration_growth);
+  note(worst.reactions, over_growth(relative_error(all, twins), acceleration_growth));
 }
 
 void sweep(const TreeRecipe& recipe, int trees, unsigned seed) {

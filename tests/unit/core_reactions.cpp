@@ -56,7 +56,7 @@ double error_against_balance(const Scene& scene, RandomTree& random) {
         twins.segment<6>(at) = expected[k];
       }
   EXPECT_EQ(found.size(), scene.joints.size());
-  return relative_error(all, twins) / growth_of(twin, s);
+  return over_growth(relative_error(all, twins), growth_of(twin, s));
 }
 
 void sweep(const TreeRecipe& recipe, int trees, unsigned seed) {
@@ -113,6 +113,7 @@ TEST(Reactions, RateOfArticulatedMomentum) {
     ASSERT_TRUE(pass(s.t, s.q.data(), qdot.data(), p.data(), pdot.data()));
 
     const double growth = growth_of(twin, s);
+    ASSERT_LE(growth, 1e4);
     double size = 1, error = 0;
     for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
       const auto reaction = pass.reaction(k);
@@ -126,7 +127,7 @@ TEST(Reactions, RateOfArticulatedMomentum) {
         EXPECT_NEAR(pass.acceleration(static_cast<std::size_t>(body.u + i)), udot[body.u + i],
                     algebra_tol(12) * growth * std::max(1.0, udot.cwiseAbs().maxCoeff()));
     }
-    worst = std::max(worst, error / size / growth);
+    worst = std::max(worst, over_growth(error / size, growth));
   }
   EXPECT_LT(worst, algebra_tol(12));
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");

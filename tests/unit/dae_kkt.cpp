@@ -97,9 +97,9 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
         std::max(1.0, std::max(u.cwiseAbs().maxCoeff(), sigma.cwiseAbs().maxCoeff()));
     const auto error = [&](const Solution& found) {
       EXPECT_TRUE(found.done);
-      return std::max((found.u - u).cwiseAbs().maxCoeff(),
-                      (found.sigma - sigma).cwiseAbs().maxCoeff()) /
-             scale / growth;
+      return over_growth(
+          std::max(relative_error(found.u, u, scale), relative_error(found.sigma, sigma, scale)),
+          growth);
     };
     const auto dense = make_dense_kkt(mechanism), sparse = make_sparse_kkt(mechanism);
     const Solution plain = solve(*dense, *e, s.t, s.q, r, g, fade_evaluation);

@@ -196,6 +196,7 @@ bool expect_told(const Mechanism& mechanism, const RunResult& run) {
   EXPECT_EQ(run.status, "done") << run.reason;
   const auto& columns = run.trajectory.columns;
   std::map<std::string, long> samples;
+  EXPECT_EQ(run.trajectory.rows.size(), static_cast<std::size_t>(run.settings.samples + 1));
   for (const auto& row : run.trajectory.rows) {
     const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(row.data() + 1, mechanism.nq());
     const auto unique = unique_by_singular_values(mechanism, row[0], q);

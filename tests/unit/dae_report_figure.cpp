@@ -174,10 +174,13 @@ TEST(Figure, TheMechanismIsDrawnWithinItsFrame) {
   std::smatch size;
   ASSERT_TRUE(std::regex_search(svg, size, std::regex("width=\"(\\S+)\" height=\"(\\S+)\"")));
   const std::regex x("c?x[12]?=\"(-?[0-9.]+)\"");
+  int seen = 0;
   for (auto m = std::sregex_iterator(svg.begin(), svg.end(), x); m != std::sregex_iterator(); ++m) {
+    ++seen;
     EXPECT_GE(std::stod((*m)[1]), 0);
     EXPECT_LE(std::stod((*m)[1]), std::stod(size[1]));
   }
+  EXPECT_GE(seen, 6);  // both ends of three links
 }
 
 }  // namespace
