@@ -103,7 +103,7 @@ bool SweptParts::take(const VectorXd& theta, MatrixXd& table) {
     if (names_[k].of != Of::transmission) continue;
     const std::string& name = names_[k].name;
     transmissions.try_emplace(k, *mechanism, 0.0, name.substr(0, name.rfind('.')),
-                              std::vector<int>{poses.rate()});
+                              std::vector<int>{poses.rate()}, std::vector<HeldCoordinate>{});
   }
   const auto e = mechanism->evaluation<double>();
   VectorXd u = VectorXd::Zero(mechanism->nv()), udot = u, way = u, none, r(mechanism->nv());
