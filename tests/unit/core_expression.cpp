@@ -293,14 +293,13 @@ TEST(Expression, BoundsHowDeepAndHowLongItIs) {
   EXPECT_NEAR(value(sum), 2001 * a, 1e-9);
 }
 
-/// Any characters: a formula or one sentence, and no more.
 // With its switches held where they are a formula is what it was; each turns where its mode ends.
 TEST(Expression, HoldsItsSwitches) {
-  const std::vector<std::string> names{"x", "y"};
+  const std::vector<std::string> xy{"x", "y"};
   for (const char* text :
        {"if(x < y and not y <= 0.5, x^2, 3*y)", "abs(x - y) + sign(x)*y", "floor(3*x) + floor(y)",
         "min(x, y)*max(x, 2*y)", "if(abs(x) > max(y, 0.2), sign(y), floor(x/y))"}) {
-    const Expression formula(text, names);
+    const Expression formula(text, xy);
     Switches switches(2);
     const Expression held = switches.held(formula);
     EXPECT_EQ(held.corner() == "" || held.corner() == "if", true) << text;
@@ -316,13 +315,14 @@ TEST(Expression, HoldsItsSwitches) {
       }
   }
   Switches switches(2);
-  switches.held(Expression("floor(x)", names));
+  switches.held(Expression("floor(x)", xy));
   EXPECT_EQ(switches.name(0), "floor");
   EXPECT_EQ(switches.turned(0, 2, 3), 3);
   EXPECT_EQ(switches.turned(0, 2, 2), 1);
   EXPECT_LT(switches.margin(0, 2, 3.1), 0);
 }
 
+/// Any characters: a formula or one sentence, and no more.
 TEST(Expression, AnyTextIsReadOrRefused) {
   const std::string letters = "ab_2O.q sincoqrtif()(),+-*/^<>=!andornot0123456789e.\x80\xff\n";
   int read = 0;
