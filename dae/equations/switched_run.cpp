@@ -119,6 +119,16 @@ SwitchedRun::SwitchedRun(const EquationFile& file, const EquationRunRequest& req
   crossings_.assign(switches_.size(), Crossings(tolerance_));
 }
 
+double SwitchedRun::argument(std::size_t k, double t, const double* y) {
+  x_[0] = t;
+  std::copy_n(y, y_.size(), x_.begin() + 1);
+  std::copy(held_.parameters.begin(), held_.parameters.end(),
+            x_.end() - static_cast<std::ptrdiff_t>(held_.parameters.size()));
+  double value;
+  evaluate(switches_.argument(k), x_.data(), line_.data(), &value);
+  return value;
+}
+
 bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
   if (switches_.size() == 0 || of_rates_) return false;
   const double begun = thread_seconds();
