@@ -174,7 +174,8 @@ class MaximalSolver final : public LoopSolver {
     if (natural_.empty()) measure(t, q);
     std::size_t row = 0;
     for (std::size_t i = 0; i < loop_model_.loops.size(); ++i)
-      for (int r = 0; r < loop_model_.loops[i].rows; ++r) place_column(i, r, columns_[row++]);
+      for (int r = 0; r < loop_model_.loops[i].rows; ++r, ++row)
+        if (!idle_[row]) place_column(i, r, columns_[row]);
     for (std::size_t i = 0; i < columns_.size(); ++i)
       for (std::size_t j = 0; j <= i; ++j)
         loops_.at(static_cast<int>(i), static_cast<int>(j)) =
@@ -189,13 +190,23 @@ class MaximalSolver final : public LoopSolver {
     for (const std::size_t k : bodies) sum += Tree::inner(a[k], b[k]);
     return sum;
   }
-  /// What is natural for rows of axes, at the first configuration.
+  /// What is natural for rows of axes, at the first configuration; and the rows that no joint can
+  /// move, those of a loop between welded bodies and the angle between slides. Their wrenches are
+  /// the joints' own to take: h is zero there but for rounding, which is no scale for anything.
   void measure(double t, const double* q) {
-    std::vector<double> inertia(still_.size());
+    std::vector<double> inertia(still_.size()), entries(mechanism_.constraint_pattern().size());
     natural_.resize(g_.size());
     e_.place(t, q);
     e_.mass_diagonal(inertia.data());
     axis_scale_.measure(inertia, natural_);
+    e_.constraint_entries(entries.data());
+    idle_.clear();
+    for (const auto& loop : loop_model_.loops)
+      for (int row = 0; row < loop.rows; ++row)
+        idle_.push_back(natural_[idle_.size()] == 0 && !loop.is_coupler());
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      if (entries[i] != 0)
+        idle_[static_cast<std::size_t>(mechanism_.constraint_pattern()[i].row)] = 0;
   }
 
   void place_column(std::size_t loop, int row, LoopColumn& column) {
@@ -257,6 +268,7 @@ class MaximalSolver final : public LoopSolver {
   std::vector<double> still_, torque_, prescribed_ = std::vector<double>(still_.size());
   Columns f_, h_;
   std::vector<double> d_, g_, phi_, nu_, natural_, compliance_;
+  std::vector<char> idle_;  ///< by row
   std::vector<LoopColumn> columns_;
 };
 

@@ -194,6 +194,101 @@ TEST(Maximal, RedundantRowsFadeAsInTheAssembledMatrix) {
   }
 }
 
+/// A weld of a loop between bodies that slides carry in a plane, whose angle no joint moves; and
+/// one between bodies that are welded already. What is left of such rows is rounding.
+TEST(Maximal, RowsThatNoJointMovesAreLeftOut) {
+  const char* bodies = R"(
+gravity = [1.3, -9.81, 0]
+[[body]]
+name = "a"
+mass = 0.7
+com = [0.31, 0.17, 0.05]
+inertia = [0.021, 0.034, 0.047]
+[[body]]
+name = "b"
+mass = 1.3
+com = [-0.23, 0.11, 0.07]
+inertia = [0.052, 0.061, 0.073]
+[[body]]
+name = "c"
+mass = 0.9
+com = [0.41, -0.13, 0.03]
+inertia = [0.013, 0.027, 0.033]
+)";
+  const char* slides = R"(
+[[joint]]
+name = "A"
+kind = "prismatic"
+child = "a"
+axis = [0.83, 0.57, 0]
+[[joint]]
+name = "B"
+kind = "prismatic"
+child = "b"
+axis = [0.83, 0.57, 0]
+origin = { parent = [0.9, -0.7, 0] }
+[[joint]]
+name = "C"
+kind = "revolute"
+parent = "b"
+child = "c"
+axis = [0, 0, 1]
+origin = { parent = [0.37, 0.29, 0] }
+velocity = 1.7
+[[loop]]
+name = "L"
+kind = "weld"
+parent = "a"
+child = "b"
+origin = { parent = [0.9, -0.7, 0] }
+)";
+  const char* welds = R"(
+[[joint]]
+name = "A"
+kind = "universal"
+child = "a"
+axis = [0.36, 0.92, 0.14]
+axis2 = [0.93, 0.04, -0.34]
+velocity = [0.9, -0.4]
+[[joint]]
+name = "B"
+kind = "weld"
+parent = "a"
+child = "b"
+origin = { parent = [0.17, -0.53, 0.29] }
+[[joint]]
+name = "C"
+kind = "revolute"
+parent = "b"
+child = "c"
+axis = [0.73, 0.17, -0.66]
+origin = { parent = [-0.21, 0.38, 0.4] }
+velocity = 1.7
+[[loop]]
+name = "L"
+kind = "weld"
+parent = "a"
+child = "b"
+origin = { parent = [0.54, -0.14, 0.71], child = [0.37, 0.39, 0.42] }
+)";
+  for (const char* rest : {slides, welds}) {
+    const Mechanism mechanism(parse_scene(std::string(bodies) + rest));
+    const auto e = mechanism.evaluation<double>(), other = mechanism.evaluation<double>();
+    const auto exact = make_assembled_solver(mechanism, *e);
+    const auto found = make_maximal_solver(mechanism, *other);
+    const VectorXd q = mechanism.tree().q0, u = mechanism.tree().u0;
+    VectorXd expected(mechanism.nv()), udot(mechanism.nv()), lambda(mechanism.m());
+    ASSERT_TRUE(
+        exact->acceleration(0, q.data(), u.data(), nullptr, 0, 0, expected.data(), lambda.data()));
+    ASSERT_TRUE(
+        found->acceleration(0, q.data(), u.data(), nullptr, 0, 0, udot.data(), lambda.data()));
+    EXPECT_GT(expected.cwiseAbs().maxCoeff(), 1);
+    EXPECT_LT(relative_error(udot, expected), 1e-11) << rest;
+    EXPECT_LT(lambda.cwiseAbs().maxCoeff(), 1e3) << rest;
+    EXPECT_EQ(found->faded_rows().size(), exact->faded_rows().size()) << rest;
+  }
+}
+
 TEST(Maximal, SaysWhichJointHasNothingToMove) {
   Scene scene = row_of_four_bars(1, 1.1);
   scene.bodies.push_back(scene.bodies.front());
