@@ -16,9 +16,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double no_form = 1e-6;       // of what a form is summed from: redundant, or rounding
-constexpr double no_curvature = 1e-9;  // of Φ in units: rows that say nothing
-constexpr double at_rest = 1e-12;      // of Φ, Φ̇ and Φ̈ in units
+// Of what a form is summed from, and of Φ in units: what rounding leaves of redundant equations,
+// and numbers that contradict each other, by what they leave open or by what counts as dependent.
+constexpr double beside_contradictions = 30;
+constexpr double at_rest = 1e-12;  // of Φ, Φ̇ and Φ̈ in units
 constexpr double most_entries = 1e5;
 constexpr Eigen::Index most_free = 60, most_curved = 12;
 
@@ -43,7 +44,7 @@ class SecondOrderForms {
     MatrixXd squares = MatrixXd::Zero(free_.cols(), free_.cols());
     for (const MatrixXd& form : forms.all) squares += form * form;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(squares);
-    const double least = no_form * no_form * eigen.eigenvalues().maxCoeff();
+    const double least = least_form_ * least_form_;
     found.flat = (eigen.eigenvalues().array() <= least).count();
     if (free_.cols() - found.flat > most_curved) return found;
     const MatrixXd curved = eigen.eigenvectors().rightCols(free_.cols() - found.flat);
@@ -88,6 +89,7 @@ class SecondOrderForms {
     VectorXd rate(mechanism_.m());
     e_.velocities(rate.data());
     const VectorXd here = loops_.gap(t_, q_);
+    least_form_ = beside_contradictions * std::max(rank_tolerance, here.cwiseAbs().maxCoeff());
     MatrixXd parts(mechanism_.m(), 0);
     const auto add = [&](const VectorXd& part) {
       parts.conservativeResize(mechanism_.m(), parts.cols() + 1);
@@ -106,7 +108,7 @@ class SecondOrderForms {
       add(0.5 * (bend(start + free_.col(i)) - bend(start - free_.col(i))));
     const MatrixXd seen = idle_.transpose() * parts;
     const double terms = (idle_.cwiseAbs().transpose() * parts.cwiseAbs()).maxCoeff();
-    const double least = std::max(no_form * terms, no_curvature);
+    const double least = least_form_ * std::max(terms, 1.0);
     if (seen.cwiseAbs().maxCoeff() > least)
       idle_ = idle_ * rank_and_idle(seen, least / rank_tolerance).left;
   }
@@ -124,7 +126,7 @@ class SecondOrderForms {
       values.col(i) = idle_.transpose() * g;
       terms = std::max(terms, (idle_.cwiseAbs().transpose() * g.cwiseAbs()).maxCoeff());
     }
-    const double least = std::max(no_form * terms, no_curvature);
+    const double least = least_form_ * std::max(terms, 1.0);
     if (!(values.cwiseAbs().maxCoeff() > least)) return false;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(values * values.transpose());
     const auto flat = (eigen.eigenvalues().array() <= least * least).count();
@@ -154,6 +156,7 @@ class SecondOrderForms {
     double largest = 0;
     for (const MatrixXd& form : forms.all) largest = std::max(largest, form.norm());
     for (MatrixXd& form : forms.all) form /= largest;
+    least_form_ /= largest;
     return forms;
   }
 
@@ -169,7 +172,7 @@ class SecondOrderForms {
       MatrixXd slopes(idle_.cols(), n * zeros.cols());
       for (std::size_t i = 0; i < forms.all.size(); ++i)
         slopes.row(static_cast<Eigen::Index>(i)) = (forms.all[i] * zeros).reshaped().transpose();
-      combinations = left_null_space(slopes, no_form);
+      combinations = left_null_space(slopes, least_form_);
     }
     VectorXd c;
     if (combinations.cols() > 0) {
@@ -194,9 +197,10 @@ class SecondOrderForms {
   Evaluation<double>& e_;
   double t_;
   const VectorXd& q_;
-  MatrixXd free_, idle_;  ///< V and the ω, columns, in units
-  VectorXd still_;        ///< Φ̈ without rates, in units
-  bool moving_ = false;   ///< with time
+  MatrixXd free_, idle_;   ///< V and the ω, columns, in units
+  VectorXd still_;         ///< Φ̈ without rates, in units
+  bool moving_ = false;    ///< with time
+  double least_form_ = 0;  ///< that is not zero but for rounding and contradictions
 };
 
 }  // namespace
