@@ -1,3 +1,4 @@
+#include <momenta/dae/assembly/quadratic_forms.h>
 #include <momenta/dae/assembly/second_order.h>
 #include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/dense/least_squares.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 #include <vector>
 
 namespace momenta {
@@ -16,93 +16,12 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double no_form = 1e-6;       // of what a form is summed from: redundant, or rounding
-constexpr double no_curvature = 1e-9;  // of Φ in units: rows that say nothing
+// Of what a form is summed from, and of Φ in units: what rounding leaves of redundant equations,
+// and numbers that contradict each other, by what they leave open or by what counts as dependent.
+constexpr double beside_contradictions = 30;
+constexpr double at_rest = 1e-12;  // of Φ, Φ̇ and Φ̈ in units
 constexpr double most_entries = 1e5;
-constexpr Eigen::Index most_free = 60;
-
-class Random {
- public:
-  VectorXd direction(Eigen::Index n) {
-    VectorXd y(n);
-    for (double& x : y)
-      x = 2 * static_cast<double>(random_()) / static_cast<double>(std::mt19937::max()) - 1;
-    return y.normalized();
-  }
-
- private:
-  std::mt19937 random_{1};  // the same directions every time
-};
-
-/// Symmetric forms F_i of z unknowns.
-struct Forms {
-  std::vector<MatrixXd> all;
-  Eigen::Index size() const { return all.front().rows(); }
-  VectorXd at(const VectorXd& y) const {
-    VectorXd values(static_cast<Eigen::Index>(all.size()));
-    for (std::size_t i = 0; i < all.size(); ++i)
-      values[static_cast<Eigen::Index>(i)] = y.dot(all[i] * y);
-    return values;
-  }
-  MatrixXd sum(const VectorXd& c) const {
-    MatrixXd m = MatrixXd::Zero(size(), size());
-    for (std::size_t i = 0; i < all.size(); ++i) m += c[static_cast<Eigen::Index>(i)] * all[i];
-    return m;
-  }
-  /// In the unknowns x, y = basis x.
-  Forms in(const MatrixXd& basis) const {
-    Forms f;
-    for (const MatrixXd& form : all) f.all.push_back(basis.transpose() * form * basis);
-    return f;
-  }
-};
-
-/// Orthonormal columns spanning directions y with F_i(y) = 0: by Gauss-Newton from many starts.
-MatrixXd zeros_of(const Forms& f) {
-  constexpr int iterations = 80;
-  constexpr double reached = 1e-18, another = 1e-3;
-  const Eigen::Index n = f.size();
-  Random random;
-  MatrixXd span(n, 0);
-  const int starts = 20 + 4 * static_cast<int>(n);
-  for (int start = 0; start < starts && span.cols() < n; ++start) {
-    VectorXd y = random.direction(n);
-    VectorXd values = f.at(y);
-    for (int i = 0; i < iterations && values.norm() > reached; ++i) {
-      MatrixXd slopes(values.size(), n);
-      for (std::size_t k = 0; k < f.all.size(); ++k)
-        slopes.row(static_cast<Eigen::Index>(k)) = 2 * (f.all[k] * y).transpose();
-      MatrixXd normal = slopes * slopes.transpose();
-      normal.diagonal().array() += 1e-3 * values.squaredNorm() + 1e-300;
-      y = (y - slopes.transpose() * normal.ldlt().solve(values)).normalized();
-      if (!y.allFinite()) break;
-      values = f.at(y);
-    }
-    if (!(values.norm() <= reached)) continue;
-    y -= span * (span.transpose() * y);
-    if (!(y.norm() > another)) continue;
-    span.conservativeResize(n, span.cols() + 1);
-    span.rightCols(1) = y.normalized();
-  }
-  return span;
-}
-
-/// Σ c_i F_i that is positive definite, c by the rule of perceptrons: each y where it is not adds
-/// F_i(y). Empty where none was found.
-VectorXd positive_sum(const Forms& f) {
-  constexpr int most = 500;
-  constexpr double positive = 1e-6;
-  VectorXd c = f.at(VectorXd::Ones(f.size()).normalized());
-  for (int i = 0; i < most; ++i) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(f.sum(c));
-    const VectorXd& values = eigen.eigenvalues();
-    if (values[0] > positive * values.cwiseAbs().maxCoeff()) return c;
-    const VectorXd there = f.at(eigen.eigenvectors().col(0));
-    if (!(there.norm() > 0)) break;
-    c += there.normalized();
-  }
-  return {};
-}
+constexpr Eigen::Index most_free = 60, most_curved = 12;
 
 class SecondOrderForms {
  public:
@@ -120,13 +39,14 @@ class SecondOrderForms {
     idle_ = idle(a, rank);
     leave_out_time(a);
     if (idle_.cols() == 0 || free_.cols() == 0 || !keep_curved()) return found;
-    Forms forms = all_forms();
+    QuadraticForms forms = all_forms();
     // Where no form depends on y all forms are zero.
     MatrixXd squares = MatrixXd::Zero(free_.cols(), free_.cols());
     for (const MatrixXd& form : forms.all) squares += form * form;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(squares);
-    const double least = no_form * no_form * eigen.eigenvalues().maxCoeff();
+    const double least = least_form_ * least_form_;
     found.flat = (eigen.eigenvalues().array() <= least).count();
+    if (free_.cols() - found.flat > most_curved) return found;
     const MatrixXd curved = eigen.eigenvectors().rightCols(free_.cols() - found.flat);
     judge(forms.in(curved), curved, found);
     return found;
@@ -146,7 +66,7 @@ class SecondOrderForms {
     return whole;
   }
 
-  /// Φ̈ in units at rates u = C x, no accelerations; x null: none.
+  /// Φ̈ in units at rates u = C x, no accelerations.
   VectorXd bend(const VectorXd& x) {
     const VectorXd u = x.cwiseProduct(loops_.units().rates);
     VectorXd g(mechanism_.m()), force(mechanism_.nv());
@@ -169,6 +89,7 @@ class SecondOrderForms {
     VectorXd rate(mechanism_.m());
     e_.velocities(rate.data());
     const VectorXd here = loops_.gap(t_, q_);
+    least_form_ = beside_contradictions * std::max(rank_tolerance, here.cwiseAbs().maxCoeff());
     MatrixXd parts(mechanism_.m(), 0);
     const auto add = [&](const VectorXd& part) {
       parts.conservativeResize(mechanism_.m(), parts.cols() + 1);
@@ -176,36 +97,36 @@ class SecondOrderForms {
     };
     for (const double later : {0.1, 1.0, 10.0}) add(loops_.gap(t_ + later, q_) - here);
     e_.place(t_, q_.data());
-    moving_ = !parts.isZero(1e-12) || !rate.isZero(0) || !still_.isZero(0);
+    moving_ = !parts.isZero(at_rest) || !rate.isZero(at_rest) || !still_.isZero(at_rest);
     if (!moving_ || idle_.cols() == 0) return;
     // Φ̈ at u₀ + V y, u₀ what the time asks for: its part without y, and that linear in y.
-    DenseLeastSquares least;
-    least.compute(a, rank_tolerance);
-    const VectorXd start = -least.solve(VectorXd(rate.cwiseQuotient(loops_.units().equations)));
+    DenseLeastSquares steps;
+    steps.compute(a, rank_tolerance);
+    const VectorXd start = -steps.solve(VectorXd(rate.cwiseQuotient(loops_.units().equations)));
     add(bend(start));
     for (Eigen::Index i = 0; i < free_.cols(); ++i)
       add(0.5 * (bend(start + free_.col(i)) - bend(start - free_.col(i))));
     const MatrixXd seen = idle_.transpose() * parts;
     const double terms = (idle_.cwiseAbs().transpose() * parts.cwiseAbs()).maxCoeff();
-    idle_ = idle_ * (seen.cwiseAbs().maxCoeff() > no_form * terms
-                         ? rank_and_idle(seen, terms).left
-                         : MatrixXd::Identity(seen.rows(), seen.rows()));
+    const double least = least_form_ * std::max(terms, 1.0);
+    if (seen.cwiseAbs().maxCoeff() > least)
+      idle_ = idle_ * rank_and_idle(seen, least / rank_tolerance).left;
   }
 
   /// Keeps of the ω combinations whose form is not zero; false: there is none.
   bool keep_curved() {
-    Random random;
+    RandomDirections random;
     const Eigen::Index f = free_.cols();
     const Eigen::Index samples = std::min(idle_.cols(), f * (f + 1) / 2) + 2;
     MatrixXd values(idle_.cols(), samples);
     double terms = 0;
     for (Eigen::Index i = 0; i < samples; ++i) {
-      const VectorXd g = curvature(random.direction(f));
+      const VectorXd g = curvature(random.next(f));
       if (!g.allFinite()) return false;
       values.col(i) = idle_.transpose() * g;
       terms = std::max(terms, (idle_.cwiseAbs().transpose() * g.cwiseAbs()).maxCoeff());
     }
-    const double least = std::max(no_form * terms, no_curvature);
+    const double least = least_form_ * std::max(terms, 1.0);
     if (!(values.cwiseAbs().maxCoeff() > least)) return false;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(values * values.transpose());
     const auto flat = (eigen.eigenvalues().array() <= least * least).count();
@@ -213,9 +134,9 @@ class SecondOrderForms {
     return idle_.cols() > 0;
   }
 
-  Forms all_forms() {
+  QuadraticForms all_forms() {
     const Eigen::Index f = free_.cols(), p = idle_.cols();
-    Forms forms;
+    QuadraticForms forms;
     forms.all.assign(static_cast<std::size_t>(p), MatrixXd::Zero(f, f));
     const auto fill = [&](Eigen::Index i, Eigen::Index j, const VectorXd& g) {
       const VectorXd value = idle_.transpose() * g;
@@ -235,11 +156,12 @@ class SecondOrderForms {
     double largest = 0;
     for (const MatrixXd& form : forms.all) largest = std::max(largest, form.norm());
     for (MatrixXd& form : forms.all) form /= largest;
+    least_form_ /= largest;
     return forms;
   }
 
-  void judge(const Forms& forms, const MatrixXd& curved, SecondOrder& found) {
-    const MatrixXd zeros = zeros_of(forms);
+  void judge(const QuadraticForms& forms, const MatrixXd& curved, SecondOrder& found) {
+    const MatrixXd zeros = common_zeros(forms);
     const Eigen::Index n = forms.size(), rest = n - zeros.cols();
     if (rest == 0) return;
     const MatrixXd others = zeros.cols() == 0 ? MatrixXd::Identity(n, n)
@@ -250,11 +172,11 @@ class SecondOrderForms {
       MatrixXd slopes(idle_.cols(), n * zeros.cols());
       for (std::size_t i = 0; i < forms.all.size(); ++i)
         slopes.row(static_cast<Eigen::Index>(i)) = (forms.all[i] * zeros).reshaped().transpose();
-      combinations = left_null_space(slopes, no_form);
+      combinations = left_null_space(slopes, least_form_);
     }
     VectorXd c;
     if (combinations.cols() > 0) {
-      Forms positive;
+      QuadraticForms positive;
       for (Eigen::Index k = 0; k < combinations.cols(); ++k)
         positive.all.push_back(others.transpose() * forms.sum(combinations.col(k)) * others);
       c = positive_sum(positive);
@@ -275,9 +197,10 @@ class SecondOrderForms {
   Evaluation<double>& e_;
   double t_;
   const VectorXd& q_;
-  MatrixXd free_, idle_;  ///< V and the ω, columns, in units
-  VectorXd still_;        ///< Φ̈ without rates, in units
-  bool moving_ = false;   ///< with time
+  MatrixXd free_, idle_;   ///< V and the ω, columns, in units
+  VectorXd still_;         ///< Φ̈ without rates, in units
+  bool moving_ = false;    ///< with time
+  double least_form_ = 0;  ///< that is not zero but for rounding and contradictions
 };
 
 }  // namespace

@@ -34,8 +34,8 @@ struct SecondOrder {
 };
 
 /// At (t, q) where the equations of positions have rank `rank` in all rates, less than their
-/// number. Nothing is found of more than 10⁵ entries of Φ_q, or where more than 60 rates are free.
-/// O((n + m)³)
+/// number. Nothing is found of more than 10⁵ entries of Φ_q, or where more than 60 rates are free
+/// or the forms depend on more than 12 of them. O((n + m)³)
 SecondOrder second_order(ScaledLoops& loops, double t, const Eigen::VectorXd& q, int rank);
 
 /// "at A.u = 1, B.u = -2 …", what is stuck and by which loop.

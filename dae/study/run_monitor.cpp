@@ -89,10 +89,12 @@ bool RunMonitor::read(double t, const double* y, const double* ydot) {
 bool RunMonitor::sample(double t, const double* y, const double* ydot) {
   if (!read(t, y, ydot)) {
     trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
-    // Of a form that has them by M u = p alone.
     Eigen::VectorXd u(mechanism_.nv()), none = u, pdot = u;
     none.setZero();
-    if (!written_ && !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
+    if (const DaeSystem* dae = form_->dae(); dae && !dae->failure().empty())
+      trouble_ += ": " + dae->failure();
+    else if (!written_ && mechanism_.m() == 0 &&
+             !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
       trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
     return false;
   }
