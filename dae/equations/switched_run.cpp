@@ -114,6 +114,7 @@ SwitchedRun::SwitchedRun(const EquationFile& file, const EquationRunRequest& req
       of_rates_ |= v > file.size() && v <= 2 * file.size();
   }
   held_.parameters.resize(file.parameters.size() + switches_.size());
+  held_.held.assign(held_.held.size(), 0);
   x_.resize(held_.arguments());
   line_.resize(longest);
   crossings_.assign(switches_.size(), Crossings(tolerance_));
@@ -152,7 +153,8 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
     EquationFile written = file_;
     EquationFile& next = back ? written : held_;
     if (back)
-      written.start = held_.start, written.values = held_.values, written.rates = held_.rates;
+      written.start = held_.start, written.values = held_.values, written.rates = held_.rates,
+      written.held = held_.held;
     else
       for (const std::size_t k : turns_.which)
         mode(k) = switches_.turned(k, mode(k), argument(k, turns_.t, held_.values.data()));
@@ -256,7 +258,7 @@ std::string SwitchedRun::begin_anew(EquationFile& file, EquationStart& start) co
 }
 
 std::string SwitchedRun::in_words(std::size_t k) const {
-  return reading::in_quotes(switches_.name(k)) + " of " + file_.name_of(equation_of_[k]);
+  return reading::in_quotes(switches_.name(k)) + " of " + file_.name_of(equation_of_[k]) + ",";
 }
 
 }  // namespace momenta
