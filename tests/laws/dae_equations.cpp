@@ -505,6 +505,10 @@ TEST(EquationRuns, BeginAnewAtJumps) {
               1e-6);
   EXPECT_NEAR(end({"x"}, {"der(x) = floor(3*t)"}, "[run]\nend = 2\n"), 5, 1e-7);
   EXPECT_NEAR(end({"x"}, {"der(x) = sign(t - 0.5)*max(t, 1)"}, "[run]\nend = 2\n"), 1.5, 1e-7);
+  // From rest: friction takes 2/100 of each swing.
+  EXPECT_NEAR(end({"x", "v"}, {"der(x) = v", "der(v) = -100*x - sign(v)"},
+                  "values = { x = 1 }\n[run]\nend = 0.6283185307179586\n"),
+              0.96, 1e-6);
   EXPECT_NEAR(end({"x"}, {"der(x) = min(abs(t - 1), 0.25)"}, "[run]\nend = 2\n"), 0.4375, 1e-7);
 }
 
