@@ -114,6 +114,7 @@ SwitchedRun::SwitchedRun(const EquationFile& file, const EquationRunRequest& req
       of_rates_ |= v > file.size() && v <= 2 * file.size();
   }
   held_.parameters.resize(file.parameters.size() + switches_.size());
+  held_.held.assign(held_.held.size(), 0);
   x_.resize(held_.arguments());
   line_.resize(longest);
   crossings_.assign(switches_.size(), Crossings(tolerance_));
@@ -138,10 +139,10 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
   held_.rates.assign(start.point.ydot.begin(), start.point.ydot.end());
   for (std::size_t k = 0; k < switches_.size(); ++k)
     mode(k) = switches_.mode(k, argument(k, held_.start, held_.values.data()));
-  Turns last{-std::numeric_limits<double>::infinity(), {}};
+  Turns last{-std::numeric_limits<double>::infinity(), {}, {}};
   while (piece(start, spent(), run)) {
     const bool at_once = turns_.t <= last.t + 10 * tolerance_;
-    if (!at_once) last = {turns_.t, {}};
+    if (!at_once) last = {turns_.t, {}, {}};
     const auto turned_before = [&](std::size_t k) {
       return std::find(last.which.begin(), last.which.end(), k) != last.which.end();
     };
@@ -152,10 +153,10 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
     EquationFile written = file_;
     EquationFile& next = back ? written : held_;
     if (back)
-      written.start = held_.start, written.values = held_.values, written.rates = held_.rates;
+      written.start = held_.start, written.values = held_.values, written.rates = held_.rates,
+      written.held = held_.held;
     else
-      for (const std::size_t k : turns_.which)
-        mode(k) = switches_.turned(k, mode(k), argument(k, turns_.t, held_.values.data()));
+      for (std::size_t i = 0; i < turns_.which.size(); ++i) mode(turns_.which[i]) = turns_.modes[i];
     const std::string why = begin_anew(next, start);
     if (!why.empty()) {
       run.done = false;
@@ -167,7 +168,7 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
     integrate_piece(written, start, request_, {}, spent(), run);
     if (!run.done && run.reason != "interrupted")
       run.reason += "; from t = " + compact(turns_.t, 6) + " on " + in_words(turns_.which.front()) +
-                    " turns back and forth: expected --integrator radau5, or a law without jumps";
+                    " turns back and forth: expected a law without jumps there";
     return true;
   }
   return true;
@@ -198,7 +199,7 @@ bool SwitchedRun::piece(const EquationStart& start, double spent_s, EquationRun&
 }
 
 void SwitchedRun::find_turns(double t0, double t1, const Interpolant& between) {
-  turns_ = {t1, {}};
+  turns_ = {t1, {}, {}};
   std::array<std::vector<double>, Crossings::points> states;
   for (std::size_t i = 0; i < states.size(); ++i) {
     states[i].resize(y_.size());
@@ -215,14 +216,21 @@ void SwitchedRun::find_turns(double t0, double t1, const Interpolant& between) {
     };
     found.clear();
     crossings_[k].step(t0, t1, values, at, found);
-    double t = std::numeric_limits<double>::infinity();
+    double t = std::numeric_limits<double>::infinity(), taken = 0;
     for (const Crossing& c : found)
       if (!c.up) t = std::min(t, c.t);
-    // A mode that is wrong without a crossing was so from where the margin was zero.
-    if (found.empty() && values.back() < 0) t = t0 == held_.start ? t0 : t1;
+    if (found.empty() && values.back() < 0) {
+      // A mode that is wrong without a crossing was so from where the margin was zero.
+      t = t0 == held_.start ? t0 : t1;
+      taken = switches_.mode(k, argument(k, t1, states.back().data()));
+    } else if (t <= t1) {
+      between(t, y_.data());
+      taken = switches_.turned(k, mode(k), argument(k, t, y_.data()));
+    }
     if (t > turns_.t + tolerance_) continue;
-    if (t < turns_.t - tolerance_) turns_ = {t, {}};
+    if (t < turns_.t - tolerance_) turns_ = {t, {}, {}};
     turns_.which.push_back(k);
+    turns_.modes.push_back(taken);
   }
   if (turns_.t >= request_.end - 10 * tolerance_) turns_.which.clear();
 }
@@ -256,7 +264,7 @@ std::string SwitchedRun::begin_anew(EquationFile& file, EquationStart& start) co
 }
 
 std::string SwitchedRun::in_words(std::size_t k) const {
-  return reading::in_quotes(switches_.name(k)) + " of " + file_.name_of(equation_of_[k]);
+  return reading::in_quotes(switches_.name(k)) + " of " + file_.name_of(equation_of_[k]) + ",";
 }
 
 }  // namespace momenta

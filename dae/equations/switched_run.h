@@ -37,6 +37,7 @@ class SwitchedRun {
   struct Turns {
     double t = 0;
     std::vector<std::size_t> which;
+    std::vector<double> modes;  ///< they take
   };
   double& mode(std::size_t k) { return held_.parameters[file_.parameters.size() + k]; }
   double argument(std::size_t k, double t, const double* y);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace momenta {
 
@@ -27,10 +26,13 @@ bool FilteredError::at(double t, const double* y, const double* ydot, double c) 
 }
 
 double FilteredError::norm(const double* e, const double* weights, double h) {
-  if (!(c_ > 0)) return std::numeric_limits<double>::infinity();
-  std::fill(filtered_.begin(), filtered_.end(), 0.0);
-  add_product(system_.pattern(), by_rate_, c_, e, filtered_);
-  matrix_->solve(filtered_.data());
+  if (c_ > 0) {
+    std::fill(filtered_.begin(), filtered_.end(), 0.0);
+    add_product(system_.pattern(), by_rate_, c_, e, filtered_);
+    matrix_->solve(filtered_.data());
+  } else {
+    std::copy_n(e, n_, filtered_.begin());
+  }
   double sum = 0;
   for (std::size_t i = 0; i < n_; ++i) {
     if (!system_.differential(static_cast<int>(i))) continue;

@@ -31,7 +31,7 @@ class FilteredError {
   /// Takes J and ∂F/∂y' there. False: they have no value, or J is singular.
   bool at(double t, const double* y, const double* ydot, double c);
   /// Root mean square, over all variables, of weighed errors of those that are tested; `h`: of the
-  /// step. Infinite before at().
+  /// step. Not filtered before at().
   double norm(const double* e, const double* weights, double h);
 
  private:

@@ -96,6 +96,7 @@ class Radau5 {
     ydot0_ = ydot_;
     t_ = t;
     error_.forget();
+    failure_ = "the step became as short as the rounding of t";
     while (true) {
       const double t1 = step_end(t, end);
       if (options_.step > 0 && rejected_ && have_derivatives_)

@@ -70,7 +70,7 @@ class CpuLimit {
   long calls_ = 0, between_ = 1;  ///< since then; until the next look
 };
 
-/// A run against the limit of its steps: as soon as a hundred thousand of them were so short that
+/// A run against the limit of its steps: as soon as thirty thousand of them were so short that
 /// the limit would be reached before the end, it need not go on to find out.
 class Pace {
  public:
@@ -93,7 +93,7 @@ class Pace {
   }
 
  private:
-  static constexpr long looked_at = 100'000;
+  static constexpr long looked_at = 30'000;
   static std::string in_seconds(double x) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1e s", x);
