@@ -43,7 +43,8 @@ bool check_sum(const Scene& scene, const Census& census, const Sum& sum, const s
                        (count == 1 ? std::string("0") : "0 to " + std::to_string(count - 1)) +
                        " for a " + std::string(name_of(joint.kind)) + " joint");
     require(std::isfinite(sum.ratios[i]) && (sum.ratios[i] != 0 || (may_vanish && i + 1 == n)),
-            scene, sum.at, who, "ratios must be finite and not zero");
+            scene, sum.at, who,
+            "ratios has one that is 0 or not finite, expected finite ones other than 0");
     require(met.emplace(joint.name, coordinate).second, scene, sum.at, who,
             ("coordinate " + std::to_string(coordinate) + " of " + named +
              " is there twice, expected once with the sum of its ratios")

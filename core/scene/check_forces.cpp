@@ -27,7 +27,8 @@ void check_ends(const Scene& scene, const Census& census, const ForceSpec& force
                 const std::string& who) {
   census.require_body(force.parent, true, force.at, who, "parent");
   census.require_body(force.child, false, force.at, who, "child");
-  require(force.parent != force.child, scene, force.at, who, "parent and child must be two bodies");
+  require(force.parent != force.child, scene, force.at, who,
+          "parent and child are one body, expected two");
   require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at, who,
           "origin must be finite [m]");
 }

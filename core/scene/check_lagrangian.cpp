@@ -58,7 +58,8 @@ void check_coordinates(const Scene& scene) {
                                                          std::string_view::npos;
                                             }),
             scene, spec.at, who,
-            "must have a unit without commas, quotes, brackets and control characters");
+            "has a unit that no column can have, expected one without commas, quotes, brackets and "
+            "control characters");
     require(std::isfinite(c.position) && std::isfinite(c.velocity), scene, spec.at, who,
             "position and velocity must be finite");
   }
@@ -78,7 +79,7 @@ void check_held(const Scene& scene) {
       throw SceneError(scene.where(scene.held_at) + "[assembly] hold: " + in_quotes(name) +
                        " is no coordinate, expected one of: " + listed(known));
     require(held.insert(name).second, scene, scene.held_at, "[assembly] hold",
-            ("names coordinate " + in_quotes(name) + " twice").c_str());
+            ("names coordinate " + in_quotes(name) + " twice, expected once").c_str());
   }
 }
 

@@ -22,7 +22,7 @@ std::string cycle_sentence(const std::vector<const JointSpec*>& cycle) {
     bodies += on_one_line(cycle[i]->parent) + " -> ";
   }
   return "joints " + joints + " form a cycle: " + bodies + on_one_line(cycle.front()->parent) +
-         "; make one of them a [[loop]]";
+         ", expected a tree; make one of them a [[loop]]";
 }
 
 }  // namespace

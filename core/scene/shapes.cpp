@@ -32,7 +32,7 @@ Eigen::Matrix3d inertia_of(const Shape& shape, double mass) {
 }
 
 std::string matrix_fault(const Eigen::Matrix3d& inertia) {
-  if (!inertia.allFinite()) return "is not finite";
+  if (!inertia.allFinite()) return "is not finite, expected smaller numbers";
   const double largest = inertia.cwiseAbs().maxCoeff();
   if (largest == 0) return "";
   const Eigen::Matrix3d scaled = inertia / largest;

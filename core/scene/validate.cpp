@@ -48,7 +48,8 @@ void check_edge(const Scene& scene, const Census& census, const Edge& edge,
                 const std::string& who) {
   census.require_body(edge.parent, true, edge.at, who, "parent");
   census.require_body(edge.child, false, edge.at, who, "child");
-  require(edge.parent != edge.child, scene, edge.at, who, "parent and child must be two bodies");
+  require(edge.parent != edge.child, scene, edge.at, who,
+          "parent and child are one body, expected two");
   require(edge.origin_parent.allFinite() && edge.origin_child.allFinite(), scene, edge.at, who,
           "origin must be finite [m]");
   require(std::abs(edge.rotation.norm() - 1) <= reading::norm_slack, scene, edge.at, who,
@@ -187,7 +188,7 @@ void check_joints(const Scene& scene, const Census& census) {
     require(joint.kind != JointKind::spherical || !joint.limits ||
                 ((*joint.limits)[0] == 0 && (*joint.limits)[1] < std::numbers::pi),
             scene, joint.at, who,
-            "limits of a spherical joint must be 0 and an angle below pi [rad]");
+            "limits of a spherical joint are others, expected 0 and an angle below pi [rad]");
     require(joint.rotor_inertia.empty() || joint.rotor_inertia.size() == rotors_of(joint.kind),
             scene, joint.at, who,
             "rotor_inertia must be empty, of one number for each coordinate of a revolute, "
@@ -305,7 +306,7 @@ void check_rest(const Scene& scene, const Census& census) {
   for (const std::string& joint : scene.held) {
     census.require_joint(joint, scene.held_at, "[assembly] hold");
     require(held.insert(joint).second, scene, scene.held_at, "[assembly] hold",
-            ("names joint " + in_quotes(joint) + " twice").c_str());
+            ("names joint " + in_quotes(joint) + " twice, expected once").c_str());
   }
   require(scene.gravity.allFinite(), scene, {}, "gravity", "must be finite [m/s²]");
 }

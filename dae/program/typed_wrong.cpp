@@ -67,43 +67,52 @@ const CLI::Option* option_named(const CLI::App& verb, const std::string& name) {
 
 std::string typed_wrong(const CLI::App& app, const CLI::ParseError& error,
                         const std::vector<std::string>& typed) {
-  const std::string said = error.what(), kind = error.get_name();
+  const std::string said = error.what();
+  const auto is = [&](CLI::ExitCodes code) {
+    return error.get_exit_code() == static_cast<int>(code);
+  };
   const CLI::App* verb = verb_of(app);
   if (verb == nullptr && !typed.empty() && !typed.front().starts_with('-'))
     return unknown_verb(app, typed.front());
   if (verb == nullptr)
     return "found " + (typed.empty() ? std::string("nothing") : reading::in_quotes(typed.front())) +
            ", expected a verb, or --help";
-  if (kind == "ExtrasError") {
-    const std::string words = behind(said, "expected: ");
-    const auto is_word = [&](const std::string& word) {
-      return words == word || words.starts_with(word + " ");
+  if (is(CLI::ExitCodes::ExtrasError)) {
+    // They stand there from the last to the first; an option brings its value along.
+    const std::string words = " " + behind(said, "expected: ") + " ";
+    const auto is_left = [&](const std::string& word) {
+      return words.find(" " + word + " ") != std::string::npos;
     };
-    const auto word = std::find_if(typed.begin(), typed.end(), is_word);
+    const auto is_option = [&](const std::string& word) {
+      return word.starts_with('-') && is_left(word);
+    };
+    auto word = std::find_if(typed.begin(), typed.end(), is_option);
+    if (word == typed.end()) word = std::find_if(typed.begin(), typed.end(), is_left);
     return left_over(*verb, word == typed.end() ? words : *word);
   }
-  if (kind == "ConversionError") {
+  if (is(CLI::ExitCodes::ConversionError)) {
     const std::string pair = behind(said, "convert: ");
     const std::string name = pair.substr(0, pair.find(" = "));
     if (const CLI::Option* option = option_named(*verb, name); option && name != pair)
       return name + " is " + reading::in_quotes(behind(pair, " = ")) + ", expected " +
              taken_by(*option);
   }
-  if (kind == "RequiredError") {
+  if (is(CLI::ExitCodes::RequiredError)) {
     const std::string name = said.substr(0, said.find(" is required"));
     if (const CLI::Option* option = option_named(*verb, name))
       return verb->get_name() + ": " + shown_name(*option) + " is missing, expected " +
              synopsis_of(*verb) +
              (option->nonpositional() ? " with " + name + " " + option->get_type_name() : "");
   }
-  if (kind == "ArgumentMismatch") {
+  if (is(CLI::ExitCodes::ArgumentMismatch)) {
     const std::string name = said.substr(0, said.find_first_of(": "));
     if (const CLI::Option* option = option_named(*verb, name))
       return name + (is_flag(*option) ? " has a value, expected none"
                                       : " has no value, expected " + taken_by(*option));
   }
-  if (kind == "RequiresError") return said + ", which is missing; expected both or neither";
-  if (kind == "ExcludesError") return said + ", expected one of them";
+  if (is(CLI::ExitCodes::RequiresError))
+    return said + ", which is missing; expected both or neither";
+  if (is(CLI::ExitCodes::ExcludesError)) return said + ", expected one of them";
   if (said.find("expected") != std::string::npos) return said;
   return verb->get_name() + ": " + reading::on_one_line(said) + ", expected " + synopsis_of(*verb) +
          " as momenta " + verb->get_name() + " --help has them";

@@ -265,7 +265,7 @@ TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
        }},
       {"axis2 is for universal joints only",
        [&](Scene& s) { s.joints[0].axis2 = Eigen::Vector3d::UnitX(); }},
-      {"axis2 must be a unit vector",
+      {"axis2 is no direction, expected a unit vector",
        [&](Scene& s) {
          s.joints[1].kind = JointKind::universal;
          s.joints[1].axis2 = {2, 0, 0};
@@ -277,7 +277,7 @@ TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
        }},
       {"direction is for planar joints only",
        [&](Scene& s) { s.joints[0].direction = Eigen::Vector3d::UnitX(); }},
-      {"direction must be a unit vector",
+      {"direction is no direction, expected a unit vector",
        [&](Scene& s) {
          s.joints[1].kind = JointKind::planar;
          s.joints[1].direction = {nan, 0, 0};

@@ -145,8 +145,8 @@ void check_requirements(const Value& root, const Parameters& parameters, const s
                   parameters.names()[static_cast<std::size_t>(i)] + " = " +
                   digits(parameters[static_cast<std::size_t>(i)]);
       t.fail_key("that", "does not hold: " + on_one_line(that) + values +
-                             (because.empty() ? "" : ": " + on_one_line(because)) +
-                             ", expected parameters for which it does");
+                             (because.empty() ? ", expected parameters for which it does"
+                                              : ": " + on_one_line(because)));
     } catch (const ExpressionError& e) {
       t.fail_at(place_in(at, e.place()), "that, " + in_quotes(that) + ": " + e.what());
     }

@@ -60,10 +60,11 @@ void read_limits(const Fields& table, const std::string& unit, const std::string
   if (table.has("limits")) {
     const std::vector<double> limits = table.numbers("limits", {unit});
     if (limits.size() != 2 || !(limits[0] < limits[1]))
-      table.fail_key("limits", limits.size() == 2 ? "has its first number not below its second"
-                                                  : "has " + std::to_string(limits.size()) +
-                                                        " entries, expected the least and the "
-                                                        "largest coordinate");
+      table.fail_key("limits", limits.size() == 2
+                                   ? "has its first number not below its second, expected it below"
+                                   : "has " + std::to_string(limits.size()) +
+                                         " entries, expected the least and the "
+                                         "largest coordinate");
     spec.limits = {limits[0], limits[1]};
   }
   for (const char* key : {"stop_stiffness", "stop_damping", "stop_width"})
