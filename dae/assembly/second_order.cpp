@@ -60,7 +60,7 @@ struct Forms {
 /// Orthonormal columns spanning directions y with F_i(y) = 0: by Gauss-Newton from many starts.
 MatrixXd zeros_of(const Forms& f) {
   constexpr int iterations = 80;
-  constexpr double reached = 1e-18, another = 1e-3;
+  constexpr double reached = 1e-14, another = 1e-3;  // rounding of y F y leaves 1e-16
   const Eigen::Index n = f.size();
   Random random;
   MatrixXd span(n, 0);
