@@ -26,10 +26,8 @@ Departures::Departures(const Mechanism& mechanism, const RunSettings& settings, 
 void Departures::look_at_energy(double t, double in_state, double turned_over, double off) {
   largest_energy_ = std::max(largest_energy_, in_state);
   const double scale = std::max(turned_over, floor());
-  const bool largest = off >= largest_off_;
-  if (largest) largest_off_ = off;
-  beyond_told_.look(t, off > energy.told * scale, largest);
-  beyond_apart_.look(t, off > energy.apart * scale, largest);
+  beyond_told_.look(t, off > energy.told * scale);
+  beyond_apart_.look(t, off > energy.apart * scale);
 }
 
 void Departures::look_at_rates(double t, double opening, Eigen::Index row, double fastest) {
@@ -51,10 +49,10 @@ void Departures::judge_energy(RunResult& run) const {
   if (!(off > energy.told * scale)) return;
   const bool apart = off > energy.apart * scale;
   const double from = (apart ? beyond_apart_ : beyond_told_).from;
-  const std::string sentence = "from t = " + compact(from, 6) +
-                               " s on the balance of energy is off by more than " +
-                               (apart ? "half" : "a twentieth") + " of the " + compact(scale, 3) +
-                               " J turned over, by " + compact(off, 3) + " J at the most";
+  const std::string sentence =
+      "from t = " + compact(from, 6) + " s on the balance of energy is off by more than " +
+      (apart ? "a quarter" : "a twentieth") + " of the " + compact(scale, 3) +
+      " J turned over, by " + compact(off, 3) + " J at the most";
   if (!apart) {
     run.departure = sentence;
     return;

@@ -13,7 +13,7 @@
 #include <momenta/dae/solver/memory.h>
 #include <momenta/dae/study/run_result.h>
 
-#include <string>
+#include <cmath>
 
 namespace momenta {
 
@@ -22,7 +22,7 @@ class Departures {
   struct Share {
     double told, apart;
   };
-  static constexpr Share energy{0.05, 0.5}, rates{0.05, 0.25};
+  static constexpr Share energy{0.05, 0.25}, rates{0.05, 0.25};
 
   Departures(const Mechanism& mechanism, const RunSettings& settings, double span);
 
@@ -31,9 +31,7 @@ class Departures {
   /// |Φ̇|∞ at a sample and its row, the fastest rate of a joint [1/s].
   void look_at_rates(double t, double opening, Eigen::Index row, double fastest);
   void carry(Memory& memory) {
-    memory(largest_energy_), memory(largest_off_);
-    for (Beyond* b : {&beyond_told_, &beyond_apart_})
-      memory(b->now), memory(b->since), memory(b->from);
+    memory(largest_energy_), memory(beyond_told_.from), memory(beyond_apart_.from);
     memory(opening_), memory(row_), memory(at_), memory(fastest_);
   }
 
@@ -42,15 +40,11 @@ class Departures {
   void judge(RunResult& run) const;
 
  private:
-  /// Stretches of samples beyond a share of what was turned over until then.
+  /// When a share of what was turned over until then was first passed [s]; NaN: it was not.
   struct Beyond {
-    bool now = false;
-    double since = 0;  ///< where the last stretch began [s]
-    double from = 0;   ///< where that with the largest error did
-    void look(double t, bool beyond, bool largest) {
-      if (beyond && !now) since = t;
-      if (beyond && largest) from = since;
-      now = beyond;
+    double from = not_measured;
+    void look(double t, bool beyond) {
+      if (beyond && std::isnan(from)) from = t;
     }
   };
   double floor() const { return at_rest_ + of_state_ * largest_energy_; }
@@ -62,7 +56,6 @@ class Departures {
   double at_rest_;  ///< an energy that is none, but for those in the state [J]
   double of_state_;
   Beyond beyond_told_, beyond_apart_;
-  double largest_off_ = 0;                     ///< [J]
   double largest_energy_ = 0;                  ///< T + |V| at the samples [J]
   double opening_ = 0, at_ = 0, fastest_ = 0;  ///< largest |Φ̇|∞, and when
   Eigen::Index row_ = 0;

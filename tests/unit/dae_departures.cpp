@@ -13,6 +13,7 @@
 #include <momenta/dae/study/work_study.h>
 
 #include <cmath>
+#include <utility>
 
 namespace momenta::dae_departures {
 namespace {
@@ -48,7 +49,7 @@ TEST(Departures, EnergyTurnedOverHasDampersAndMotors) {
   s.joints[0].damping = 0.4;
   const double first = 2.0 / 3, left = first * std::exp(-2 * 0.4 * 3 * 1.5);
   const RunResult damped = run_of(Mechanism(s), "momentum", 1.5);
-  EXPECT_NEAR(damped.energy_turned_over, first + (first - left), 1e-3);
+  EXPECT_NEAR(damped.energy_turned_over, first + (first - left), 1e-2);
   EXPECT_TRUE(reliable(damped)) << damped.departure;
   // At a steady rate a motor of d u brings what the damper takes, and neither shows in the balance.
   ForceSpec motor;
@@ -85,12 +86,12 @@ TEST(Departures, JudgesTheBalanceByWhatWasTurnedOver) {
     return r;
   };
   EXPECT_TRUE(reliable(judged(0.04, 1)));
-  const RunResult off = judged(0.3, 1);
+  const RunResult off = judged(0.2, 1);
   EXPECT_EQ(off.status, "done");
   EXPECT_EQ(off.departure,
             "from t = 1 s on the balance of energy is off by more than a twentieth of the 1 J "
-            "turned over, by 0.3 J at the most");
-  const RunResult apart = judged(0.7, 1);
+            "turned over, by 0.2 J at the most");
+  const RunResult apart = judged(0.4, 1);
   EXPECT_EQ(apart.status, "came apart");
   EXPECT_EQ(apart.stopped_at, 2);
   EXPECT_FALSE(finished(judged(std::numeric_limits<double>::infinity(), 1)));
@@ -178,6 +179,28 @@ TEST(Departures, BranchesThatDifferAreSaid) {
   EXPECT_TRUE(pareto_front(study.runs, false).empty());
   b.last_pose = a.last_pose;
   EXPECT_FALSE(branches_of({a, b}).differ);
+}
+
+/// The end is no scale of the motion: a run to a time that no run reaches takes the steps of one to
+/// a time that it does.
+TEST(Departures, NoStepIsTiedToAFarEnd) {
+  const Mechanism mechanism(
+      read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml"));
+  const Start start = assemble(mechanism).start;
+  for (const auto& [form, integrator] :
+       {std::pair{"momentum", "dop853"}, {"acceleration", "vern9"}, {"projected", "dp5"}}) {
+    RunRequest request;
+    request.settings.form = form;
+    request.settings.integrator = integrator;
+    request.settings.end_time = 1e300;
+    request.settings.samples = 1;
+    int steps = 0;
+    request.going_on = [&] { return ++steps < 200; };
+    const RunResult r = run_form(mechanism, start, request);
+    EXPECT_EQ(steps, 200) << form << " " << integrator << ": " << r.reason;
+    EXPECT_GT(r.stopped_at, 0.2) << form << " " << integrator;
+    EXPECT_LT(r.stopped_at, 200) << form << " " << integrator;
+  }
 }
 
 }  // namespace
