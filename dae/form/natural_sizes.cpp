@@ -83,10 +83,11 @@ NaturalSizes::NaturalSizes(const Mechanism& mechanism, const Start& start)
   double own = own_rate(mechanism, start);
   // Next to an equilibrium a tree starts far slower than it goes on.
   if (mechanism.m() == 0) own = std::max(own, rate_of_weight(mechanism));
-  rate = fastest = power_of_ten(own, rate_edge);
-  const std::vector<bool> lengths = lengths_by_rate(mechanism);
-  for (Eigen::Index i = 0; i < start.u.size(); ++i)
-    if (!lengths[static_cast<std::size_t>(i)]) fastest = std::max(fastest, std::abs(start.u[i]));
+  // What slides fast has forces rounded by its speed, v × p among them, however slow its motion is.
+  if (start.u.size() > 0) fastest = start.u.cwiseQuotient(unit).cwiseAbs().maxCoeff();
+  if (std::isfinite(fastest)) own = std::max(own, fastest);
+  rate = power_of_ten(own, rate_edge);
+  fastest = std::isfinite(fastest) ? std::max(fastest, rate) : rate;
 }
 
 void NaturalSizes::of_momenta(Evaluation<double>& e, double at_rate, double* sizes) const {

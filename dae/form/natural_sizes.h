@@ -25,7 +25,7 @@ struct NaturalSizes {
   std::vector<double> q;    ///< nq; of components of quaternions 1
   std::vector<double> way;  ///< by rate u, nv: of what it changes [m or rad]
   double rate = 1;          ///< [1/s]; of u: `way` times that
-  double fastest = 1;       ///< of that and of what turns at the start [1/s]
+  double fastest = 0;       ///< of that and of rates at the start, by `way` [1/s]
 };
 
 }  // namespace momenta
