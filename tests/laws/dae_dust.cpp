@@ -94,7 +94,7 @@ TEST(Dust, PrismaticAlongACylindricalJointMovesTheSameTilted) {
 }
 
 /// A pendulum of two rods in one piece, with a loop between them that ties nothing, alone and
-/// beside one that does: by every form, as without that loop.
+/// beside one that does: by every form that is a DAE, as without that loop.
 TEST(Dust, LoopsBetweenWeldedBodiesHarmNoForm) {
   const std::string rods = R"(
 gravity = [0, -9.81, 0]
