@@ -160,10 +160,6 @@ class Assembler {
     Eigen::VectorXd rate(mechanism_.m());
     const std::vector<double> j = loops_.jacobian();
     steps_.factor(j);
-    const auto fastest = [&] {
-      return u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0;
-    };
-    const double asked = fastest();  // what is left of it may be rounding
     for (int pass = 0; pass < 2; ++pass) {
       e().move(u.data());
       e().velocities(rate.data());
@@ -177,7 +173,9 @@ class Assembler {
     a.velocity_residual = rate.cwiseAbs().maxCoeff();
     double largest = 0;
     for (const double x : j) largest = std::max(largest, std::abs(x));
-    const double scale = prescribed + std::max(asked, fastest()) * (1 + largest);
+    const double scale =
+        prescribed +
+        (u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0) * (1 + largest);
     // Of redundant equations rates keep what the singular values that do not count leave.
     const bool known = a.rank == mechanism_.m() || a.kept > 0;
     const double left = std::max(1e-10, known ? 2 * a.dropped : rank_tolerance);
