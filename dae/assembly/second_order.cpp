@@ -16,9 +16,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of what a form is summed from, and of Φ in units: what rounding leaves of redundant equations,
-// and numbers that contradict each other, by what they leave open or by what counts as dependent.
-constexpr double beside_contradictions = 30;
+constexpr double rounding = 3e-6;  // of forms, beside what they are summed from and beside one
+// Rows that depend on others but for δ turn V and ω by δ over the least singular value that counts,
+// and leave as much of a form that is zero.
+constexpr double beside_dependence = 30, too_close = 0.1;
 constexpr double at_rest = 1e-12;  // of Φ, Φ̇ and Φ̈ in units
 constexpr double most_entries = 1e5;
 constexpr Eigen::Index most_free = 60, most_curved = 12;
@@ -35,7 +36,12 @@ class SecondOrderForms {
     e_.place(t_, q_.data());
     const MatrixXd a = scaled_jacobian(mechanism_, e_).a;
     if (!a.allFinite()) return found;
-    free_ = rank_and_idle(a.transpose(), 0, rank).left;
+    const RankAndIdle columns = rank_and_idle(a.transpose(), 0, rank);
+    const double open = loops_.gap(t_, q_).cwiseAbs().maxCoeff();
+    const double depends = std::max(columns.dropped, open);
+    least_form_ = std::max(rounding, beside_dependence * depends / (rank > 0 ? columns.kept : 1));
+    if (!(least_form_ < too_close)) return found;
+    free_ = columns.left;
     idle_ = idle(a, rank);
     leave_out_time(a);
     if (idle_.cols() == 0 || free_.cols() == 0 || !keep_curved()) return found;
@@ -89,7 +95,6 @@ class SecondOrderForms {
     VectorXd rate(mechanism_.m());
     e_.velocities(rate.data());
     const VectorXd here = loops_.gap(t_, q_);
-    least_form_ = beside_contradictions * std::max(rank_tolerance, here.cwiseAbs().maxCoeff());
     MatrixXd parts(mechanism_.m(), 0);
     const auto add = [&](const VectorXd& part) {
       parts.conservativeResize(mechanism_.m(), parts.cols() + 1);
@@ -200,7 +205,7 @@ class SecondOrderForms {
   MatrixXd free_, idle_;   ///< V and the ω, columns, in units
   VectorXd still_;         ///< Φ̈ without rates, in units
   bool moving_ = false;    ///< with time
-  double least_form_ = 0;  ///< that is not zero but for rounding and contradictions
+  double least_form_ = 0;  ///< that is not zero but for rounding and rows that nearly depend
 };
 
 }  // namespace

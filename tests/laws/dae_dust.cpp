@@ -94,7 +94,7 @@ TEST(Dust, PrismaticAlongACylindricalJointMovesTheSameTilted) {
 }
 
 /// A pendulum of two rods in one piece, with a loop between them that ties nothing, alone and
-/// beside one that does: by every form, as without that loop.
+/// beside one that does: by every form that is a DAE, as without that loop.
 TEST(Dust, LoopsBetweenWeldedBodiesHarmNoForm) {
   const std::string rods = R"(
 gravity = [0, -9.81, 0]
@@ -149,6 +149,7 @@ length = 2.5
     ASSERT_EQ(without.status, "done") << without.reason;
     const Mechanism mechanism(parse_scene(rods + more + idle, "rods"), {.cut = CutChoice::scene});
     for (const std::string& form : form_names()) {
+      if (form != "momentum" && !is_dae_form(form)) continue;
       const RunResult r = two_seconds(mechanism, form);
       ASSERT_EQ(r.status, "done") << form << ": " << r.reason;
       EXPECT_NEAR(r.trajectory.rows.back()[1], without.trajectory.rows.back()[1], 1e-4) << form;

@@ -219,7 +219,7 @@ TEST(MasslessJoints, WhatOthersMoveAloneIsNoInertia) {
 
 Scene rod_about(const Vector3d& axis, JointKind kind) {
   Scene scene = arm();
-  add_finger(scene, "spin", "arm", axis, kind);
+  add_finger(scene, "spin", "arm", axis.normalized(), kind);
   scene.bodies.back().mass = 1;
   const Vector3d along = axis.normalized();
   scene.bodies.back().inertia = (Matrix3d::Identity() - along * along.transpose()) / 12;
