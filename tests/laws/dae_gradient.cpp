@@ -543,8 +543,8 @@ TEST(Gradient, ByNumbersOfStopsDeadBandsAndFriction) {
             "X.q",
             {"mu", "v"},
             1}})
-    for (const auto& [form, method] :
-         {std::pair{"momentum", "dp5"}, {"momentum", "vern9"}, {"acceleration", "dop853"}})
+    for (const auto& [form, method] : std::vector<std::pair<std::string, std::string>>{
+             {"momentum", "dp5"}, {"momentum", "vern9"}, {"acceleration", "dop853"}})
       expect_runs(text, adaptive(of, by, form, end, method), 3e-6, 1e-4);
 }
 
