@@ -67,7 +67,7 @@ bool has_corners(const Scene& scene) {
                       std::any_of(force.torque_law.begin(), force.torque_law.end(), with_one);
              }) ||
          std::any_of(scene.drives.begin(), scene.drives.end(), [](const DriveSpec& drive) {
-           return drive.kind == "step" || !law_corner(drive).empty();
+           return drive.kind == "step" || drive.kind == "table" || !law_corner(drive).empty();
          });
 }
 
