@@ -80,9 +80,9 @@ NaturalSizes::NaturalSizes(const Mechanism& mechanism, const Start& start)
   for (const auto& b : mechanism.tree().bodies)
     for (int i = 0; i < std::min(b.nv, b.nq - (b.has_quaternion() ? 4 : 0)); ++i)
       q[static_cast<std::size_t>(b.q + i)] = way[static_cast<std::size_t>(b.u + i)];
-  double own = own_rate(mechanism, start);
-  // Next to an equilibrium a tree starts far slower than it goes on.
-  if (mechanism.m() == 0) own = std::max(own, rate_of_weight(mechanism));
+  // At rest loops may bear little, and next to an equilibrium a tree starts far slower than it goes
+  // on.
+  double own = std::max(own_rate(mechanism, start), rate_of_weight(mechanism));
   // What slides fast has forces rounded by its speed, v × p among them, however slow its motion is.
   if (start.u.size() > 0) fastest = start.u.cwiseQuotient(unit).cwiseAbs().maxCoeff();
   if (std::isfinite(fastest)) own = std::max(own, fastest);

@@ -230,7 +230,8 @@ void RunMonitor::finish() {
   result_.energy_error_max = largest(s.energy_error);
   result_.energy_turned_over = result_.energy_scale + work_.turned_over();
   departures_.judge(result_);
-  if (singular_crossings_) result_.last_pose = apart_->in_units(now_.q);
+  if (singular_crossings_ && now_.q.size() > 0)  // none where a run that goes on has no time left
+    result_.last_pose = apart_->in_units(now_.q);
   result_.multiplier_difference_max = largest(s.multiplier_difference);
   result_.reaction_errors = errors_.of_reactions();
   if (request_.reference && result_.status == "done" && errors_.compared() > 0) {

@@ -94,18 +94,18 @@ TEST(Bdf5, StartsBesideADamperOfAnySize) {
   }
 }
 
-// The error in energy of an undamped oscillation does not grow with its periods: 10⁴ tolerances of
+// The error in energy of an undamped oscillation does not grow with its periods: 10⁵ tolerances of
 // the energy exchanged, after 10⁵ steps as after 4·10⁵.
 TEST(Bdf5, EnergyOfAnOscillationOverManyPeriods) {
   Scene scene = four_bar();
   rocker_of(scene).stiffness = 1e6;
   rocker_of(scene).rest = 1.74;
-  constexpr double tolerance = 1e-7;
+  constexpr double tolerance = 3e-8;
   for (const double end : {20, 60}) {
     const RunResult r = run(scene, "momentum-index2", "bdf5", "reset", tolerance, end);
     ASSERT_EQ(r.status, "done") << r.reason;
     EXPECT_GT(r.counters.steps, 100000);
-    EXPECT_LT(r.energy_error_max, 1.5e4 * tolerance * r.energy_scale) << end;
+    EXPECT_LT(r.energy_error_max, 1.5e5 * tolerance * r.energy_scale) << end;
   }
 }
 

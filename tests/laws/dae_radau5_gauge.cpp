@@ -112,7 +112,7 @@ TEST(Radau5, EnergyOfAnOscillationOverManyPeriods) {
     if (joint.name == "C") joint.stiffness = 1e6, joint.rest = 1.74;
   const auto after = [&](double end) {
     const RunResult r =
-        equations::run_of(Mechanism(scene), "momentum-index2", "radau5", "reset", 1e-6, end, 60);
+        equations::run_of(Mechanism(scene), "momentum-index2", "radau5", "reset", 1e-7, end, 60);
     EXPECT_EQ(r.status, "done") << r.reason;
     return r;
   };
