@@ -178,8 +178,7 @@ IndexFound find_index(const CurveSystem& system, double t, const Eigen::VectorXd
   const ArrayLevel& last = found.levels.back();
   found.decided = true;
   found.why = std::to_string(last.undetermined) + " direction" +
-              (last.undetermined == 1 ? "" : "s") + " of y' " +
-              (last.undetermined == 1 ? "is" : "are") + " not determined by the " +
+              (last.undetermined == 1 ? "" : "s") + " of y' not determined by the " +
               std::to_string(last.differentiations) + " differentiations that are tried at most";
   return found;
 }

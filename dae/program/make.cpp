@@ -53,8 +53,10 @@ int make(const std::string& family, std::optional<int> n, bool turned) {
              ? std::to_string(found->least) + ", its number of hinges, or no --n"
              : std::to_string(found->least) + " to " + std::to_string(found->most)));
   if (turned && found->print)
-    throw std::invalid_argument("family '" + family + "' (" + found->what +
-                                "): found --turned, expected it of planar mechanisms alone");
+    throw std::invalid_argument(
+        "family '" + family + "' (" + found->what +
+        "): found --turned, which is for planar mechanisms alone, expected it "
+        "there");
   if (found->print)
     found->print(size);
   else

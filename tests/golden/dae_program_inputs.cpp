@@ -45,7 +45,8 @@ TEST_F(Inputs, AreNotWrittenOver) {
   // Nor what a model includes.
   write("part.xml", "<mujoco><body name='a'><joint/><geom size='1'/></body></mujoco>");
   write("m.xml", "<mujoco><worldbody><include file='part.xml'/></worldbody></mujoco>");
-  expect_refused("convert " + in("m.xml") + " " + in("part.xml"), "is a file that the scene is");
+  expect_refused("convert " + in("m.xml") + " --quiet " + in("part.xml"),
+                 "is a file that the scene is");
   // Nor by the results of other verbs.
   const std::string table = "t [s],A.q [rad],A.u [rad/s]\n0,0,0\n1,0,0\n";
   write("sub/trajectory.csv", table);

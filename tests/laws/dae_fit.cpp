@@ -482,7 +482,7 @@ TEST(Fit, FilesOfWantedPoses) {
   EXPECT_EQ(sentence("P.vx [m/s]\n1\n"),
             "1: column 'P.vx [m/s]' is no coordinate and no position of a marker; expected of "
             "'O.q', 'A.q', 'C.q', 'P.x', 'P.y', 'P.z'");
-  EXPECT_EQ(sentence("P.y,P.y\n1,2\n"), "1: column 'P.y' stands twice");
+  EXPECT_EQ(sentence("P.y,P.y\n1,2\n"), "1: column 'P.y' stands twice, expected it once");
   EXPECT_EQ(sentence("O.q\n1\n"),
             "1: the swept coordinate is the only column; expected what it is to move");
   EXPECT_EQ(sentence("P.y\n1,2\n"), "2: found 2 cells; expected 1");
@@ -501,7 +501,7 @@ TEST(Fit, WhatCannotBeDoneIsSaid) {
   EXPECT_EQ(refusal([] {
               ParametricMechanism(traced_four_bar(), "four-bar", {}, {"tilt", "tilt"});
             }),
-            "'tilt' is varied twice");
+            "'tilt' is varied twice, expected each name once");
   EXPECT_EQ(FittedParameter::from_text("parameters.crank=1:2").name, "crank");
   EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=1"); }),
             "--vary 'crank=1': expected NAME or NAME=FROM:TO, as in crank=0.1:2");
@@ -518,7 +518,7 @@ TEST(Fit, WhatCannotBeDoneIsSaid) {
             "parameter 'crank' has no range to draw starts from; expected crank=FROM:TO");
   request.parameters[0].range = {1.1, 1.2};
   EXPECT_EQ(refusal([&] { fit(family, wanted, request); }),
-            "parameter 'crank' is 1 in the scene, outside its range from 1.1 to 1.2");
+            "parameter 'crank' is 1 in the scene, expected a number in its range, from 1.1 to 1.2");
   request = varied({"crank"});
   request.sweep = "X";
   EXPECT_EQ(refusal([&] { fit(family, wanted, request); }),

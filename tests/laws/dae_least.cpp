@@ -577,7 +577,7 @@ TEST(Least, FormulasOfMotions) {
       "'max(mean(P.x))': max(…) of a motion holds another; expected a formula of single poses "
       "in it");
   EXPECT_EQ(refusal([] { MotionFormula::from_text("max(P.x"); }),
-            "'max(P.x': a bracket is not closed");
+            "'max(P.x': a bracket is not closed, expected ')'");
   const auto condition = [](const std::string& text) {
     return refusal([&] { MotionCondition::from_text(text, {"a", "b"}); });
   };

@@ -231,7 +231,7 @@ TEST_F(MjcfStructure, WrongFiles) {
   include("m.xml", "file is 'm.xml', which this element is a part of");
   include("../m.xml", "file is '../m.xml', which is not in the folder");
   include("/etc/passwd", "file is '/etc/passwd', which is not in the folder");
-  include("", "file is empty, expected a name");
+  include("", "has no file, expected one");
   std::filesystem::create_symlink("/etc/passwd", folder / "link.xml");
   include("link.xml", "file is 'link.xml', which is not in the folder");
   std::filesystem::create_directories(folder / "sub");

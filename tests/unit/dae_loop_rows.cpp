@@ -349,9 +349,10 @@ TEST(DrivenLoopRows, LeaveThePlane) {
     const Mechanism mechanism(scene, {.algebra = Algebra::planar});
     FAIL();
   } catch (const SceneError& error) {
-    EXPECT_STREQ(error.what(),
-                 "scene: the planar kernel was asked for, but the origin of loop 'C' is driven out "
-                 "of the plane of the joints");
+    EXPECT_STREQ(
+        error.what(),
+        "scene: the planar kernel was asked for, but the origin of loop 'C' is driven out "
+        "of the plane of the joints, expected a mechanism in a plane, or the spatial kernel");
   }
 }
 

@@ -96,19 +96,19 @@ std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot, Remarks& re
 void draw_link(const Node& link, const LinkDrawing& drawing, std::vector<VisualSpec>& visuals,
                Remarks& remarks) {
   const std::size_t before = visuals.size();
-  const auto draw = [&](const char* kind, auto&& tell) {
+  const auto draw = [&](const char* kind, bool tells_why) {
     for (const Node& part : link.children(kind)) try {
         std::string why;
         if (auto solid = solid_of(part, drawing, why))
           visuals.push_back(std::move(*solid));
-        else
-          tell([&] { remarks.left_out(why); });
+        else if (tells_why)
+          remarks.left_out(why);
       } catch (const SceneError& error) {
-        tell([&] { remarks.not_drawn(error); });
+        remarks.not_drawn(error);
       }
   };
-  draw("visual", [](auto&& words) { words(); });
-  if (visuals.size() == before) draw("collision", [](auto&&) {});
+  draw("visual", true);
+  if (visuals.size() == before) draw("collision", false);
 }
 
 }  // namespace momenta::reading
