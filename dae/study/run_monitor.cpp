@@ -92,7 +92,9 @@ bool RunMonitor::sample(double t, const double* y, const double* ydot) {
     // Of a form that has them by M u = p alone.
     Eigen::VectorXd u(mechanism_.nv()), none = u, pdot = u;
     none.setZero();
-    if (!written_ && !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
+    const bool by_mass_alone = mechanism_.m() == 0 || mechanism_.scene().lagrangian.has_value();
+    if (!written_ && by_mass_alone &&
+        !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
       trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
     return false;
   }
