@@ -296,8 +296,9 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
     };
     const double across =
         std::abs(height(spec.child, spec.origin_child) - height(spec.parent, spec.origin_parent));
-    if (spec.kind != LoopKind::distance && across <= left_by_files * length_of(scene) &&
-        across > in_one_plane * (1 + spec.origin_child.norm() + spec.origin_parent.norm())) {
+    if (spec.kind != LoopKind::distance &&
+        across > in_one_plane * (1 + spec.origin_child.norm() + spec.origin_parent.norm()) &&
+        across <= left_by_files * length_of(scene)) {
       char apart[32];
       std::snprintf(apart, sizeof apart, "%.2g", across);
       return "the sides of loop '" + spec.name + "' lie " + apart +

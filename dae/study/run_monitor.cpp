@@ -91,9 +91,10 @@ bool RunMonitor::sample(double t, const double* y, const double* ydot) {
     trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
     Eigen::VectorXd u(mechanism_.nv()), none = u, pdot = u;
     none.setZero();
+    const bool by_mass_alone = mechanism_.m() == 0 || mechanism_.scene().lagrangian.has_value();
     if (const DaeSystem* dae = form_->dae(); dae && !dae->failure().empty())
       trouble_ += ": " + dae->failure();
-    else if (!written_ && mechanism_.m() == 0 &&
+    else if (!written_ && by_mass_alone &&
              !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
       trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
     return false;
