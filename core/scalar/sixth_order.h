@@ -38,7 +38,7 @@ inline constexpr std::array<Point, 6> points{{{1, 45.0 / 60},
 /// is.
 inline constexpr std::array<double, 4> fourth{8.0 / 12, -8.0 / 12, -1.0 / 12, 1.0 / 12};
 
-inline constexpr int widths = 5;             ///< h, h/8, …, h/4096
+inline constexpr int widths = 6;             ///< h, h/8, …, h/32768
 inline constexpr double narrower = 1.0 / 8;  ///< of each beside the one before
 inline constexpr double read = 1e-14;        ///< rounding of numbers as they are read
 inline constexpr double exact = 1e-13;       ///< and of what is computed, not iterated

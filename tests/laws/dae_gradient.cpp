@@ -513,26 +513,26 @@ TEST(Gradient, ByNumbersOfStopsDeadBandsAndFriction) {
     double end;
   };
   const auto falls = [](const std::string& parameters) {
-    return "gravity = [-9.81, 0, 0]\n[parameters]\n" + parameters + slide + "position = 10.2\n";
+    return "gravity = [-9.81, 0, 0]\n[parameters]\n" + parameters + slide + "position = 1.2\n";
   };
   for (const auto& [text, of, by, end] : std::vector<Row>{
-           {falls("L = 10\nk = 1e4\nc = 3\nw = 0.001\n") +
+           {falls("L = 1\nk = 1e4\nc = 3\nw = 0.001\n") +
                 "limits = [\"L\", 100.0]\nstop_stiffness = \"k\"\nstop_damping = \"c\"\n"
                 "stop_width = \"w\"\n",
             "X.q",
             {"L", "k", "c", "w"},
             0.35},
-           {falls("L = 10\nk = 1e6\n") +
+           {falls("L = 1\nk = 1e6\n") +
                 "[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"k*max(0, L - q)^2\"\n",
             "X.q",
             {"L", "k"},
             0.35},
-           {falls("L = 10\nk = 1e4\n") +
+           {falls("L = 1\nk = 1e4\n") +
                 "[[force]]\nkind = \"potential\"\nV = \"if(X.q < L, k/2*(L - X.q)^2, 0)\"\n",
             "X.q",
             {"L", "k"},
             0.35},
-           {falls("band = 0.1\nk = 1e4\nrest = 9.9\n") +
+           {falls("band = 0.1\nk = 1e4\nrest = 0.9\n") +
                 "[[force]]\nkind = \"coordinate-spring\"\njoints = [\"X\"]\nratios = [1]\n"
                 "stiffness = \"k\"\nrest = \"rest\"\ndead_band = \"band\"\n",
             "X.q",
