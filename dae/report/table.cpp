@@ -20,7 +20,7 @@ std::string growth(const Growth& g) {
   if (!g.is_power()) return "no power";
   const double exponent = std::abs(g.exponent) < 0.005 ? 0 : g.exponent;  // no −0.00
   if (std::isnan(g.half_range)) return fixed(exponent, 2);
-  return fixed(exponent, 2) + "±" + fixed(g.half_range, 2);
+  return fixed(exponent, 2) + "±" + fixed(g.half_range, 2).substr(1);  // below 0.5
 }
 
 std::string count(long n) {
@@ -68,6 +68,9 @@ std::string drift_table(const StudyResult& study) {
   }
   for (const RunResult& run : study.runs) rows.push_back(row_of(run, both));
 
+  const std::size_t error = rows.front().size() - 4;
+  if (std::all_of(rows.begin() + 3, rows.end(), [&](const Row& row) { return row[error] == "-"; }))
+    for (Row& row : rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(error));
   const std::size_t columns = rows.front().size();
   std::vector<std::size_t> widest(columns);
   for (const Row& row : rows) {
