@@ -90,7 +90,8 @@ struct OpenChain::Inside {
       mass.setZero(tree.nv, tree.nv);
       mass_matrix_inward(k.w, [&](int i, int j, double x) { mass(i, j) = mass(j, i) = x; });
     }
-    return massless_joints(tree, diagonal, mass, tree.bodies[static_cast<std::size_t>(singular)].u);
+    return massless_joints(tree, failed_q.data(), diagonal, mass,
+                           tree.bodies[static_cast<std::size_t>(singular)].u);
   }
 
   /// Why the first of many states has no result, given x and y besides q.

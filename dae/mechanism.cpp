@@ -57,28 +57,6 @@ std::vector<bool> couplers_of_angles(const Scene& scene, const Tree& tree) {
   return of_angles;
 }
 
-/// Whether a joint without a rotor carries a body that has no mass, together with what is welded to
-/// it, and carries others on joints of their own.
-bool carries_on_no_mass(const Tree& tree) {
-  const std::size_t count = tree.bodies.size();
-  std::vector<char> heavy(count), carries(count);
-  for (std::size_t k = count; k-- > 0;) {
-    const Tree::Body& b = tree.bodies[k];
-    heavy[k] |= b.mass > 0 || !b.inertia.isZero(0) || b.rotor > 0;
-    if (b.nv > 0 && !heavy[k] && carries[k] && tree.carries_scene_body(static_cast<int>(k)))
-      return true;
-    if (b.parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(b.parent);
-    if (b.nv == 0) {
-      heavy[parent] |= heavy[k];
-      carries[parent] |= carries[k];
-    } else {
-      carries[parent] = 1;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
@@ -218,9 +196,8 @@ void Mechanism::take_weights() {
     take(std::get<1>(casts_->cast));
 }
 
-/// A joint may have no inertia until a loop closes above it: one solution at the start tells. Where
-/// a body without mass carries what its own joints move alone, rounding is left in place of zero,
-/// and pivots beside M_jj tell.
+/// A joint may have no inertia until a loop closes above it: one solution at the start tells, or
+/// where rounding is left in place of zero, what that is made of.
 std::string Mechanism::joint_without_inertia(bool swept) const {
   const auto size = static_cast<std::size_t>(tree_.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
@@ -230,18 +207,18 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
     e->place(0, tree_.q0.data());
     const bool factorised = matrix->factor(*e, 0, tree_.q0.data(), nullptr, fade_evaluation);
     const int rate = matrix->singular_joint();
-    return factorised || rate < 0 ? "" : light_before_loops(rate);
+    if (!factorised) return rate < 0 ? "" : light_before_loops(rate);
+  } else {
+    const auto sweeps = looped_sweeps();
+    RightSide<double> right;
+    right.fade =
+        fade_beside(fade_evaluation,
+                    masses_apart_);  // rows that depend on others leave dust for inertia otherwise
+    if (!sweeps->momentum(0, tree_.q0.data(), p.data(), right, u.data(), sigma.data(), nullptr))
+      return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   }
-  const auto sweeps = looped_sweeps();
-  RightSide<double> right;
-  right.fade =
-      fade_beside(fade_evaluation,
-                  masses_apart_);  // rows that depend on others leave dust for inertia otherwise
-  if (!sweeps->momentum(0, tree_.q0.data(), p.data(), right, u.data(), sigma.data(), nullptr))
-    return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
-  if (!carries_on_no_mass(tree_)) return "";
   const auto e = evaluation<double>();
-  const UnheldJoints unheld = unheld_joints(*this, *e, 0, tree_.q0.data(), false);
+  const UnheldJoints unheld = unheld_by_rounding(*this, *e, 0, tree_.q0.data(), false);
   return unheld.joints.empty() ? "" : light_before_loops(unheld.joints.front().rate);
 }
 

@@ -170,23 +170,30 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
 
 namespace {
 
-/// A coordinate that nothing moves, in a sentence; empty: there is none.
+/// Whether value i of a formula is the number 0.
+bool is_zero(const Expression& formula, std::size_t i) {
+  const auto& in = formula.tape()[static_cast<std::size_t>(formula.outputs()[i])];
+  return in.operation == formula::Operation::number && in.number == 0;
+}
+
+/// A coordinate whose rate no momentum tells, in a sentence; empty: there is none.
 std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& spec) {
   std::vector<bool> held(spec.coordinates.size(), false);
   for (const auto& place : model.constraint.places)
     held[static_cast<std::size_t>(place.column)] = true;
   for (std::size_t k = 0; k < model.mass.places.size(); ++k) {
     const auto& [row, column] = model.mass.places[k];
-    const auto& value =
-        model.mass.values.tape()[static_cast<std::size_t>(model.mass.values.outputs()[k])];
-    if (value.operation == formula::Operation::number && value.number == 0) continue;
+    if (is_zero(model.mass.values, k)) continue;
     held[static_cast<std::size_t>(row)] = held[static_cast<std::size_t>(column)] = true;
   }
   for (std::size_t i = 0; i < held.size(); ++i)
     if (!held[i])
-      return "coordinate '" + spec.coordinates[i].name +
-             "' has no inertia: its rate is not in the Lagrangian, and it is in no constraint; "
-             "expected one of them";
+      return "coordinate '" + spec.coordinates[i].name + "' has no inertia: " +
+             (is_zero(model.momenta, i)
+                  ? "its rate is not in the Lagrangian, and it is in no constraint; expected one "
+                    "of them"
+                  : "the Lagrangian is linear in its rate, and it is in no constraint; expected a "
+                    "Lagrangian quadratic in it, or a constraint");
   return "";
 }
 
@@ -205,7 +212,7 @@ std::string Mechanism::no_inertia(int rate, double t, const double* q) const {
   }
   const auto e = evaluation<double>();
   const UnheldJoints unheld = unheld_joints(*this, *e, t, q, true, rate);
-  if (!unheld.joints.empty()) return in_words(tree_, unheld.joints);
+  if (!unheld.joints.empty()) return in_words(*this, unheld);
   return rate < 0 ? "its equations overflow; expected smaller numbers"
                   : light_before_loops(rate) + "; expected --kkt sparse";
 }

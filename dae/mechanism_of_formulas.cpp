@@ -72,6 +72,25 @@ class StartCheck {
   std::vector<double> values_;
 };
 
+/// Where the gradient of a constraint vanishes, as where a curve crosses itself, its row has no
+/// scale of its own: it has a part of that at the start.
+std::vector<double> scales_of_constraints(const Mechanism& mechanism,
+                                          const LagrangianModel& model) {
+  constexpr double part = 0.1;
+  const auto e = mechanism.evaluation<double>();
+  e->place(0, mechanism.tree().q0.data());
+  std::vector<double> inertia(static_cast<std::size_t>(model.n)),
+      slopes(model.constraint.places.size()), scales(static_cast<std::size_t>(model.m));
+  e->mass_diagonal(inertia.data());
+  e->constraint_entries(slopes.data());
+  for (std::size_t k = 0; k < slopes.size(); ++k) {
+    const auto& [row, column] = model.constraint.places[k];
+    const double own = inertia[static_cast<std::size_t>(column)];
+    if (own > 0) scales[static_cast<std::size_t>(row)] += part * slopes[k] * slopes[k] / own;
+  }
+  return scales;
+}
+
 }  // namespace
 
 const LagrangianModel& Mechanism::lagrangian() const {
@@ -93,6 +112,7 @@ void Mechanism::take_lagrangian() {
   nonholonomic_.assign(row_names_.size(), false);
   plan_.loops = rows_ > 0;
   StartCheck{*this};
+  least_scales_ = scales_of_constraints(*this, model);
 }
 
 }  // namespace momenta

@@ -1,8 +1,8 @@
 #include <momenta/dae/dense/least_squares.h>
 #include <momenta/dae/dense_blocks.h>
+#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/unheld_joints.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,19 +16,13 @@ using Eigen::VectorXd;
 constexpr double motion_part = 1e-9;  // of a motion's largest rate
 constexpr double held_pivot = 1e-9;   // of pivots of Φ_q N, beside the largest terms of a column
 
-/// N of those `lost`.
-MatrixXd motions_without_momentum(const MatrixXd& mass, const std::vector<MasslessJoint>& joints) {
-  const auto n = static_cast<int>(mass.rows());
-  std::vector<int> lost;
-  for (const MasslessJoint& joint : joints) lost.push_back(joint.rate);
-  std::vector<int> kept;
-  for (int i = 0; i < n; ++i)
-    if (!std::binary_search(lost.begin(), lost.end(), i)) kept.push_back(i);
-  MatrixXd motions = MatrixXd::Zero(n, static_cast<Eigen::Index>(lost.size()));
-  for (std::size_t k = 0; k < lost.size(); ++k) motions(lost[k], static_cast<Eigen::Index>(k)) = 1;
-  if (kept.empty()) return motions;
-  motions(kept, Eigen::all) = -mass(kept, kept).ldlt().solve(mass(kept, lost));
-  return motions;
+/// M of a Lagrangian need not be positive: there what a pivot leaves may move what has inertia.
+void keep_those_without_momentum(const MatrixXd& mass, std::vector<MasslessJoint>& joints) {
+  constexpr double rounding = 1e-12;
+  std::erase_if(joints, [&](const MasslessJoint& joint) {
+    const VectorXd terms = mass.cwiseAbs() * joint.motion.cwiseAbs();
+    return !((mass * joint.motion).cwiseAbs().maxCoeff() <= rounding * terms.maxCoeff());
+  });
 }
 
 /// Y, columns.
@@ -59,9 +53,12 @@ UnheldJoints unheld_joints(const Mechanism& mechanism, Evaluation<double>& e, do
   if (!diagonal.allFinite()) return found;
   MatrixXd mass;
   if (mechanism.nv() <= most_pivots) mass = dense_mass(mechanism, e);
-  found.joints = massless_joints(mechanism.tree(), diagonal, mass, known);
+  found.joints = massless_joints(mechanism.tree(), q, diagonal, mass, known);
   if (mass.size() == 0 || found.joints.empty()) return found;
-  found.motions = motions_without_momentum(mass, found.joints);
+  if (mechanism.scene().lagrangian && known < 0) keep_those_without_momentum(mass, found.joints);
+  found.motions.resize(mass.rows(), static_cast<Eigen::Index>(found.joints.size()));
+  for (std::size_t k = 0; k < found.joints.size(); ++k)
+    found.motions.col(static_cast<Eigen::Index>(k)) = found.joints[k].motion;
   if (!loops || mechanism.m() == 0) return found;
   const MatrixXd y = left_free(dense_constraints(mechanism, e), found.motions);
   std::vector<MasslessJoint> unheld;
@@ -74,6 +71,46 @@ UnheldJoints unheld_joints(const Mechanism& mechanism, Evaluation<double>& e, do
   found.joints = std::move(unheld);
   found.motions = found.motions * y;
   return found;
+}
+
+UnheldJoints unheld_by_rounding(const Mechanism& mechanism, Evaluation<double>& e, double t,
+                                const double* q, bool loops) {
+  if (!inertia_may_be_missing(mechanism.tree())) return {};
+  UnheldJoints found = unheld_joints(mechanism, e, t, q, loops);
+  // Of more rates than most_pivots it is not known whether loops hold them.
+  if (found.motions.cols() == 0 && loops && mechanism.m() > 0) found.joints.clear();
+  return found;
+}
+
+std::string in_words(const Mechanism& mechanism, const UnheldJoints& unheld) {
+  const VectorXd direction =
+      unheld.motions.cols() > 0 ? VectorXd(unheld.motions.col(0)) : VectorXd();
+  return in_words(mechanism.tree(), unheld.joints, direction);
+}
+
+std::string without_loops_in_words(const Mechanism& mechanism,
+                                   const std::vector<MasslessJoint>& joints) {
+  if (!mechanism.scene().lagrangian)
+    return without_inertia(mechanism.tree(), joints) + " without the loops that hold what is on it";
+  std::string names;
+  for (const MasslessJoint& joint : joints)
+    names += (names.empty() ? "'" : ", '") +
+             mechanism.scene().lagrangian->coordinates[static_cast<std::size_t>(joint.rate)].name +
+             "'";
+  return (joints.size() > 1 ? "coordinates " + names + " have" : "coordinate " + names + " has") +
+         " no inertia" + (mechanism.m() > 0 ? " without the constraints" : "");
+}
+
+std::string mass_without_inverse(const Mechanism& mechanism, Evaluation<double>& e, double t,
+                                 const double* q) {
+  const auto& pattern = mechanism.kkt_pattern();
+  std::vector<double> values(pattern.mass.size());
+  e.place(t, q);
+  e.mass_entries(values.data());
+  const int rate = TreeFactor(pattern, mechanism.nv()).factor(values);
+  const UnheldJoints unheld = rate >= 0 ? unheld_joints(mechanism, e, t, q, false, rate)
+                                        : unheld_by_rounding(mechanism, e, t, q, false);
+  return unheld.joints.empty() ? "" : without_loops_in_words(mechanism, unheld.joints);
 }
 
 bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evaluation<double>& e,

@@ -1,3 +1,4 @@
+#include <momenta/core/expression/switches.h>
 #include <momenta/core/lagrangian/lagrangian_formulas.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/text/near_name.h>
@@ -107,8 +108,26 @@ class Reader {
     throw SceneError(scene_.where(formula.at) + who + ", " + in_quotes(formula.text) +
                      ", takes nothing that changes, expected t, a coordinate or a rate in it");
   }
-  void expect_coordinate(const Expression& equation, const LagrangianSpec::Constraint& c,
-                         const std::string& who) const {
+  /// L with jumps or corners in q̇ has no momenta there.
+  Expression smooth_in_rates(const FormulaSpec& formula, const std::string& who) {
+    Expression read = this->read(formula, who);
+    Switches switches(static_cast<int>(all_.names.size()));
+    switches.held(read);
+    for (std::size_t k = 0; k < switches.size(); ++k)
+      for (const int v : switches.argument(k).variables())
+        if (v >= n_ && v < 2 * n_)
+          throw SceneError(scene_.where(formula.at) + who + ": its " + in_quotes(switches.name(k)) +
+                           " turns with the rate " +
+                           in_quotes(all_.names[static_cast<std::size_t>(v)]) +
+                           ", expected a formula that is smooth in the rates; friction and the "
+                           "like belong to force");
+    return read;
+  }
+  void expect_equation(const Expression& equation, const LagrangianSpec::Constraint& c,
+                       const std::string& who) const {
+    if (const std::string_view corner = equation.corner(); !corner.empty())
+      throw SceneError(scene_.where(c.equation.at) + who + " has " + in_quotes(corner) +
+                       ", where no second derivative may exist; expected a smooth formula");
     const std::vector<int> all = equation.variables();
     if (std::any_of(all.begin(), all.end(), [&](int v) { return v < n_; })) return;
     throw SceneError(scene_.where(c.equation.at) + who +
@@ -133,9 +152,9 @@ LagrangianFormulas::LagrangianFormulas(const Scene& scene)
 
   Reader reader(scene, *this);
   if (!spec.lagrangian.text.empty())
-    lagrangian = reader.read(spec.lagrangian, "lagrangian");
+    lagrangian = reader.smooth_in_rates(spec.lagrangian, "lagrangian");
   else
-    kinetic = reader.read(spec.kinetic, "kinetic");
+    kinetic = reader.smooth_in_rates(spec.kinetic, "kinetic");
   if (!spec.potential.text.empty())
     potential = reader.of_positions(spec.potential, "potential",
                                     "a formula of coordinates and t; what has rates belongs to "
@@ -146,7 +165,7 @@ LagrangianFormulas::LagrangianFormulas(const Scene& scene)
     const std::string who = "constraint " + in_quotes(c.name);
     constraints.push_back(
         reader.of_positions(c.equation, who, "a holonomic equation, of coordinates and t"));
-    reader.expect_coordinate(constraints.back(), c, who);
+    reader.expect_equation(constraints.back(), c, who);
   }
   for (std::size_t i = 0; i < scene.events.size(); ++i)
     events.push_back(

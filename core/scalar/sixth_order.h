@@ -6,10 +6,19 @@
 //   f' = [45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + (f₃ − f₋₃)] / 60h + O(h⁶),    f_k = f(θ + k h).
 //
 // With h = 2⁻⁸ of the number's size rounding and truncation leave about 1e-13 of f/θ, since nothing
-// is integrated or iterated between them.
-// Source: Fornberg, Generation of finite difference formulas, Math. Comp. 51 (1988).
+// is integrated or iterated between them, where f is smooth over that. Whether it is, the
+// difference of fourth order of the same points tells: where both are apart, as of what turns many
+// times within 3h, or has a corner there, narrower widths follow. Source: Fornberg, Generation of
+// finite difference formulas, Math. Comp. 51 (1988).
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <optional>
+#include <utility>
 
 namespace momenta::sixth_order {
 
@@ -28,5 +37,56 @@ inline constexpr std::array<Point, 6> points{{{1, 45.0 / 60},
 /// The same of the fourth order, of the first four points: what it differs by tells how smooth f
 /// is.
 inline constexpr std::array<double, 4> fourth{8.0 / 12, -8.0 / 12, -1.0 / 12, 1.0 / 12};
+
+inline constexpr int widths = 6;             ///< h, h/8, …, h/32768
+inline constexpr double narrower = 1.0 / 8;  ///< of each beside the one before
+inline constexpr double read = 1e-14;        ///< rounding of numbers as they are read
+inline constexpr double exact = 1e-13;       ///< and of what is computed, not iterated
+inline constexpr double iterated = 1e-10;    ///< and of poses that are solved for
+
+/// f' by one width.
+struct Slope {
+  Eigen::VectorXd by;   ///< of sixth order
+  double apart = 0;     ///< the largest difference from that of fourth order
+  int width = 0;        ///< how often h was narrowed
+  bool agrees = false;  ///< both orders, as f that is smooth over 3h lets them
+};
+
+/// By f(i, h), f at θ + points[i].k h; f has a `rounding`, beside its largest value.
+template <class F>
+Slope slope_at(double h, double rounding, F&& f) {
+  Slope slope;
+  Eigen::VectorXd lower;
+  double largest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::VectorXd at = f(i, h);
+    if (i == 0) slope.by = lower = Eigen::VectorXd::Zero(at.size());
+    slope.by += points[i].weight / h * at;
+    if (i < fourth.size()) lower += fourth[i] / h * at;
+    if (at.size() > 0) largest = std::max(largest, at.cwiseAbs().maxCoeff());
+  }
+  if (slope.by.size() > 0) slope.apart = (slope.by - lower).cwiseAbs().maxCoeff();
+  const double size = slope.by.size() > 0 ? slope.by.cwiseAbs().maxCoeff() : 0;
+  slope.agrees = slope.apart <= 1e-8 * size + rounding * largest / h;
+  return slope;
+}
+
+/// By the widest of the widths from h on at which both orders agree, or that at which they are
+/// nearest. A width at which f throws is passed over. @throws what f throws at all of them
+template <class F>
+Slope slope_of(double h, double rounding, F&& f) {
+  std::optional<Slope> best;
+  std::exception_ptr lost;
+  for (int i = 0; i < widths && !(best && best->agrees); ++i, h *= narrower) try {
+      Slope slope = slope_at(h, rounding, f);
+      slope.width = i;
+      if (!best || slope.agrees || slope.apart < best->apart || std::isnan(best->apart))
+        best = std::move(slope);
+    } catch (const std::exception&) {
+      lost = std::current_exception();
+    }
+  if (!best) std::rethrow_exception(lost);
+  return *std::move(best);
+}
 
 }  // namespace momenta::sixth_order

@@ -1,6 +1,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/assembly/ordered_ends.h>
+#include <momenta/dae/assembly/second_order.h>
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/kkt/least_norm.h>
@@ -39,6 +40,7 @@ class Assembler {
       const int of_positions = mechanism_.has_nonholonomic() ? rank_of_positions() : 0;
       loops_.rows.assign(loops_.rows.size(), true);
       judge_rank(a);
+      if (!a.dependent_rows.empty() && a.rank < mechanism_.nv()) expect_motions(a);
       close_velocities(a);
       a.free_positions = mechanism_.nv() - (mechanism_.has_nonholonomic() ? of_positions : a.rank);
     }
@@ -158,6 +160,10 @@ class Assembler {
     Eigen::VectorXd rate(mechanism_.m());
     const std::vector<double> j = loops_.jacobian();
     steps_.factor(j);
+    const auto fastest = [&] {
+      return u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0;
+    };
+    const double given = fastest();  // whose rounding is in what is left of it
     for (int pass = 0; pass < 2; ++pass) {
       e().move(u.data());
       e().velocities(rate.data());
@@ -168,8 +174,7 @@ class Assembler {
     a.velocity_residual = rate.cwiseAbs().maxCoeff();
     double largest = 0;
     for (const double x : j) largest = std::max(largest, std::abs(x));
-    const double scale =
-        1 + (u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0) * (1 + largest);
+    const double scale = 1 + std::max(given, fastest()) * (1 + largest);
     // Of redundant equations rates keep what the singular values that do not count leave.
     const bool known = a.rank == mechanism_.m() || a.kept > 0;
     const double left = std::max(1e-10, known ? 2 * a.dropped : rank_tolerance);
@@ -205,6 +210,21 @@ class Assembler {
     a.kept = judged.kept;
     a.dropped = judged.dropped;
     a.dependent_rows = std::move(judged.dependent);
+  }
+
+  /// That rates which are free are those of motions.
+  void expect_motions(Assembly& a) {
+    const SecondOrder found = second_order(loops_, t_, a.start.q, a.rank);
+    e().place(t_, a.start.q.data());
+    if (found.stuck.size() == 0) return;
+    const std::string words = in_words(mechanism_, found);
+    if (found.certain)
+      throw SceneError(mechanism_.scene().where({}) +
+                       (found.all && found.flat == 0 ? "the mechanism" : "part of the mechanism") +
+                       " cannot move at its start: " + words);
+    const std::string undecided = "whether it can move is undecided: " + words;
+    if (found.all) throw SceneError(mechanism_.scene().where({}) + undecided);
+    if (a.branch.empty()) a.branch = undecided;
   }
 
   [[noreturn]] void nothing_moves() const {

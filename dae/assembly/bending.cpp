@@ -35,7 +35,7 @@ class Bend {
   static constexpr double length = 0.1;  // [rad or lengths]
   // Of redundant rows at most left_by_files is left, and that changes by a part of itself; 0.1² / 2
   // of curvatures of one.
-  static constexpr double bent = 100 * left_by_files;
+  static constexpr double bent = 10 * left_by_files;
 
   void look(const VectorXd& q, Bending& found) {
     VectorXd open, after;

@@ -9,7 +9,7 @@
 //   undamped    δ = −J⁺ φ whether |φ| shrinks or not. At a stretched pose, q = 0 of many parallel
 //               robots, no short step closes the loops further, and long ones leave it.
 //   least squares   where the equations are redundant and the numbers of the scene, rounded in its
-//               file, contradict each other by 10⁻⁸ at the most, no pose closes the loops: one where
+//               file, contradict each other by 10⁻⁶ at the most, no pose closes the loops: one where
 //               nothing of φ can be closed, J J⁺ φ = 0, then stands for it. Rows that lose rank
 //               because rods are stretched contradict nothing (bending.h): the pose beside it that
 //               closes is taken, or the loop is too short.

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 #include <optional>
 
 namespace momenta {
@@ -37,12 +37,17 @@ class Continuation {
       closed_ = 4 * open;
   }
 
-  /// Leaves out groups that keep freedoms here; false where none is left.
-  bool leave_free_groups(bool& all_determined);
+  /// Leaves out joints that keep freedoms here, and the equations they move; false where none is
+  /// left.
+  bool leave_free_joints(bool& all_determined);
   DriveReach follow(double end);
   const Eigen::VectorXd& pose() const { return q_; }
 
  private:
+  bool is_in(const KktPattern::Entry& entry) const {
+    return loops_.rows[static_cast<std::size_t>(entry.row)] &&
+           loops_.columns[static_cast<std::size_t>(entry.column)];
+  }
   /// u in units at (t_, q_), and how fast drives alone open the loops there [1/s].
   Eigen::VectorXd rates() {
     loops_.gap(t_, q_);
@@ -73,47 +78,42 @@ class Continuation {
   Eigen::VectorXd open_;  ///< what stayed open behind the obstacle
 };
 
-bool Continuation::leave_free_groups(bool& all_determined) {
-  const auto columns = static_cast<std::size_t>(mechanism_.nv());
-  // Columns that share a row belong to one group.
-  std::vector<int> root(columns);
-  std::iota(root.begin(), root.end(), 0);
-  const auto root_of = [&](int c) {
-    while (root[static_cast<std::size_t>(c)] != c) c = root[static_cast<std::size_t>(c)];
-    return c;
-  };
-  std::vector<int> first(static_cast<std::size_t>(mechanism_.m()), -1);
-  std::vector<bool> met(columns, false);
-  for (const auto& [row, column] : pattern_) {
-    int& one = first[static_cast<std::size_t>(row)];
-    met[static_cast<std::size_t>(column)] = true;
-    if (one < 0) one = column;
-    root[static_cast<std::size_t>(root_of(column))] = root_of(one);
-  }
+bool Continuation::leave_free_joints(bool& all_determined) {
   loops_.gap(t_, q_);
   const std::vector<double> all = loops_.jacobian();
-  all_determined = true;
-  bool any = false;
-  for (int group = 0; group < mechanism_.nv(); ++group) {
-    if (root_of(group) != group || !met[static_cast<std::size_t>(group)]) continue;
-    std::vector<double> values = all;
-    int size = 0;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (root_of(pattern_[i].column) != group) values[i] = 0;
-    for (std::size_t c = 0; c < columns; ++c)
-      size += met[c] && root_of(static_cast<int>(c)) == group;
-    const bool determined = steps_.judge(values, Judged::dependence).rank == size;
-    any = any || determined;
-    all_determined = all_determined && determined;
-    for (std::size_t c = 0; c < columns; ++c)
-      if (root_of(static_cast<int>(c)) == group) loops_.columns[c] = determined;
-    for (std::size_t r = 0; r < loops_.rows.size(); ++r)
-      if (first[r] >= 0 && root_of(first[r]) == group)
-        loops_.rows[r] = determined && !mechanism_.nonholonomic()[r];
+  std::vector<bool> met(loops_.columns.size(), false), has_columns(loops_.rows.size(), false);
+  for (const auto& [row, column] : pattern_) {
+    met[static_cast<std::size_t>(column)] = true;
+    has_columns[static_cast<std::size_t>(row)] = true;
   }
+  loops_.columns = met;
+  // Any way of the joints, whose entries are of a size and in no ratio of small numbers: what is
+  // left of it where A x is taken off moves no loop, and moves every joint that has a freedom.
+  Eigen::VectorXd way(mechanism_.nv());
+  for (Eigen::Index i = 0; i < way.size(); ++i)
+    way[i] = 1 + std::fmod(std::numbers::phi * static_cast<double>(i + 1), 1);
+  constexpr double rest = 1e-8;
+  for (bool changed = true; changed;) {
+    changed = false;
+    std::vector<double> values = all;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!is_in(pattern_[i])) values[i] = 0;
+    steps_.factor(values);
+    const Eigen::VectorXd free = way - steps_.solve(steps_.product(values, way));
+    for (std::size_t c = 0; c < met.size(); ++c)
+      if (loops_.columns[c] && !(std::abs(free[static_cast<Eigen::Index>(c)]) < rest)) {
+        loops_.columns[c] = false;
+        changed = true;
+      }
+    // What such a joint moves as well ties nothing down.
+    for (const auto& [row, column] : pattern_)
+      if (!loops_.columns[static_cast<std::size_t>(column)])
+        loops_.rows[static_cast<std::size_t>(row)] = false;
+  }
+  all_determined = loops_.columns == met;
   // Rows without columns tie drives to the ground: they hold or they do not.
-  for (std::size_t r = 0; r < loops_.rows.size(); ++r) any = any || first[r] < 0;
-  return any;
+  return std::find(loops_.columns.begin(), loops_.columns.end(), true) != loops_.columns.end() ||
+         std::find(has_columns.begin(), has_columns.end(), false) != has_columns.end();
 }
 
 std::optional<Eigen::VectorXd> Continuation::corrected(double t, Eigen::VectorXd q, double most_way,
@@ -197,7 +197,7 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
   if (mechanism.scene().drives.empty() || mechanism.m() == 0 || !(end > t)) return reach;
   Continuation way(mechanism, t, q);
   bool all_determined = true;
-  if (followed == Followed::determined && !way.leave_free_groups(all_determined)) {
+  if (followed == Followed::determined && !way.leave_free_joints(all_determined)) {
     reach.determined = false;
     return reach;
   }

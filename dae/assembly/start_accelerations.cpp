@@ -21,12 +21,10 @@ namespace {
 void solve_for_accelerations(const Mechanism& mechanism, Evaluation<double>& e, Start& s,
                              const double* tau) {
   const auto no_inertia = [&](int rate) { refuse_without_inertia(mechanism, e, s, rate); };
+  if (const UnheldJoints unheld = unheld_by_rounding(mechanism, e, s.t, s.q.data());
+      !unheld.joints.empty())
+    no_inertia(unheld.joints.front().rate);
   if (mechanism.m() == 0) {
-    Eigen::VectorXd diagonal(mechanism.nv());
-    e.mass_diagonal(diagonal.data());
-    // Rounding may leave a pivot above zero of what has no inertia.
-    if (diagonal.allFinite() && !massless_joints(mechanism.tree(), diagonal, {}).empty())
-      no_inertia(-1);
     if (!e.open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
       no_inertia(e.singular_joint());
     return;

@@ -3,6 +3,8 @@
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/relative_motion.h>
 
+#include <algorithm>
+
 namespace momenta {
 
 std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
@@ -85,8 +87,9 @@ Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
   std::vector<std::string_view> known;
   for (const JointSpec& joint : scene.joints) known.push_back(joint.name);
   for (const LoopSpec& loop : scene.loops) known.push_back(loop.name);
+  std::sort(known.begin(), known.end());
   for (const std::string& name : keep)
-    if (std::find(known.begin(), known.end(), name) == known.end())
+    if (!std::binary_search(known.begin(), known.end(), name))
       throw SceneError(scene.where({}) + "joint or loop " + reading::in_quotes(name) +
                        ", to be kept, is not in the scene, expected the name of one" +
                        reading::did_you_mean(name, known));

@@ -36,7 +36,7 @@ ClosedMotion::ClosedMotion(const Mechanism& mechanism, const GivenMotion& motion
   if (motion.rows.empty()) return;
   const VectorXd gap = loops_.gap(motion.rows.front().t, q_);
   const double open = gap.size() > 0 ? gap.cwiseAbs().maxCoeff() : 0;
-  if (open > tolerance_ && open <= left_by_files) tolerance_ = 2 * left_by_files;
+  if (open > tolerance_ && open <= left_by_files) tolerance_ = 4 * open;
   for (const LoopIsland& island : islands_.all()) {
     if (static_cast<int>(island.rates.size()) > most_rates)
       throw SceneError(

@@ -1,6 +1,5 @@
 #include <momenta/dae/equations/equation_run.h>
-#include <momenta/dae/equations/equation_system.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/equations/switched_run.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,44 +24,16 @@ EquationRun run_equations(const EquationFile& file, const EquationStart& start,
         file.where({}) + request.integrator + " takes equations of index up to " +
         std::to_string(most) + ", found index " + std::to_string(index) +
         (index == 3 ? ", expected --integrator radau5" : ", expected equations of a lower index"));
-  EquationSystem system(file, start);
-  IntegrationOptions options;
-  options.rtol = request.rtol;
-  options.atol = request.atol;
-  options.step = request.step;
-  options.max_cpu_seconds = request.max_cpu_seconds;
   EquationRun run;
   run.integrator = request.integrator;
   run.rtol = request.rtol, run.atol = request.atol;
   run.step = request.integrator == "radau5" ? request.step : 0;
   run.end = request.end;
-  std::vector<double> times;
-  for (int k = 0; k <= request.samples; ++k)
-    times.push_back(k == request.samples
-                        ? request.end
-                        : file.start + (request.end - file.start) * k / request.samples);
-  Observer observer;
-  observer.sample = [&](double t, const double* y, const double*) {
-    run.t.push_back(t);
-    run.y.emplace_back(y, y + file.size());
-    return true;
-  };
-  bool interrupted = false;
-  if (request.going_on)
-    observer.step = [&](double, double t, const Interpolant&) {
-      interrupted = !request.going_on(t);
-      return !interrupted;
-    };
+  run.start = file.start;
   const std::clock_t before = std::clock();
-  IntegrationResult result =
-      integrate(request.integrator, system, file.start, times, options, observer);
+  if (request.integrator != "ida" || !SwitchedRun(file, request).run(start, run))
+    integrate_piece(file, start, request, {}, 0, run);
   run.cpu_s = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
-  run.done = result.done;
-  run.reason = interrupted ? "interrupted" : result.reason;
-  run.stopped_at = result.end_time;
-  run.counters = result.counters;
-  run.linear_solver = result.linear_solver;
-  run.last = std::move(result.y);
   for (const double y : run.last)
     if (run.done && !std::isfinite(y)) {
       run.done = false;

@@ -23,16 +23,22 @@ struct EquationRunRequest {
 
 struct EquationRun {
   std::string integrator;
-  double rtol = 0, atol = 0, step = 0, end = 0;
+  double rtol = 0, atol = 0, step = 0, start = 0, end = 0;
   bool done = false;
   std::string reason;  ///< one sentence where it is not done
   double stopped_at = 0;
   Counters counters;
+  int switchings = 0;  ///< events of switches in formulas, at which ida began anew
   std::string linear_solver;
   double cpu_s = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> t;               ///< output times
   std::vector<std::vector<double>> y;  ///< at each
   std::vector<double> last;            ///< y where it stopped
+
+  /// Of `samples` intervals.
+  double output_time(int k, int samples) const {
+    return k == samples ? end : start + (end - start) * k / samples;
+  }
 };
 
 /// "ida" up to index 1, else "radau5"; the file's own where it names one.

@@ -11,6 +11,7 @@
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/equations/equation_start.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -72,11 +73,10 @@ SystemJacobian system_jacobian(const EquationFile& file, const structure::Offset
   return found;
 }
 
-/// max c over the equations that hang together with each variable.
-std::vector<int> differentiations_around(const structure::Signature& s,
-                                         const structure::Offsets& offsets) {
+/// Of variables: one that each hangs together with, by equations that take both.
+std::vector<int> parts_of(const structure::Signature& s, const structure::Offsets& offsets) {
   const int n = s.size();
-  std::vector<int> part(at(n));  // of variables
+  std::vector<int> part(at(n));
   std::iota(part.begin(), part.end(), 0);
   const auto root = [&](int j) {
     while (part[at(j)] != j) j = part[at(j)] = part[at(part[at(j)])];
@@ -85,12 +85,20 @@ std::vector<int> differentiations_around(const structure::Signature& s,
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       if (s.has(i, j)) part[at(root(j))] = root(offsets.transversal[at(i)]);
-  std::vector<int> most(at(n)), around(at(n));
-  for (int i = 0; i < n; ++i) {
-    int& m = most[at(root(offsets.transversal[at(i)]))];
-    m = std::max(m, offsets.equation[at(i)]);
+  for (int j = 0; j < n; ++j) part[at(j)] = root(j);
+  return part;
+}
+
+/// max c over the equations that hang together with each variable.
+std::vector<int> differentiations_around(const EquationStart& start) {
+  const std::vector<int>&equation = start.offsets.equation,
+        &transversal = start.offsets.transversal;
+  std::vector<int> most(equation.size()), around(equation.size());
+  for (std::size_t i = 0; i < equation.size(); ++i) {
+    int& m = most[at(start.part[at(transversal[i])])];
+    m = std::max(m, equation[i]);
   }
-  for (int j = 0; j < n; ++j) around[at(j)] = most[at(root(j))];
+  for (std::size_t j = 0; j < around.size(); ++j) around[j] = most[at(start.part[j])];
   return around;
 }
 
@@ -98,7 +106,7 @@ std::vector<int> indices_of(const structure::Signature& s, const EquationStart& 
   const int n = s.size(), index = std::max(start.point.found.index, 1);
   std::vector<int> of(at(n), 1);
   if (start.jacobian.regular(n)) {
-    const std::vector<int> around = differentiations_around(s, start.offsets);
+    const std::vector<int> around = differentiations_around(start);
     for (int j = 0; j < n; ++j)
       of[at(j)] = std::clamp(1 + around[at(j)] - start.offsets.variable[at(j)], 1, index);
     return of;
@@ -111,6 +119,53 @@ std::vector<int> indices_of(const structure::Signature& s, const EquationStart& 
     of[at(j)] = std::clamp(static_cast<int>(level - levels.begin()), 1, index);
   }
   return of;
+}
+
+/// How far a start is from the values that were guessed, of those that are to change least, over
+/// their size.
+double moved_by(const EquationFile& file, const EquationStart& start,
+                const ConsistentPoint& point) {
+  double most = 0;
+  for (int j = 0; j < file.size(); ++j)
+    if (start.appears[at(j)])
+      most = std::max(most, std::abs(point.y[j] - file.values[at(j)]) /
+                                (std::abs(file.values[at(j)]) + file.scales[at(j)]));
+  return most;
+}
+
+/// A guess of rates at which equations do not depend on them, y'² = y at y' = 0, has values changed
+/// in their stead. Where other rates leave all values as they are: that start, or, where there are
+/// two, why it is none.
+ConsistentPoint with_other_rates(const EquationFile& file, const EquationStart& start,
+                                 const Eigen::VectorXd& y, ConsistentPoint found) {
+  constexpr double moved = 1e-6;
+  if (found.why.empty() && moved_by(file, start, found) < moved) return found;
+  std::vector<ConsistentPoint> others;
+  for (const double sign : {1.0, -1.0}) {
+    Eigen::VectorXd rates(file.size());
+    bool changed = false;
+    for (int j = 0; j < file.size(); ++j) {
+      const bool open = start.appears[at(j)] && file.rates[at(j)] == 0;
+      rates[j] = open ? sign * (std::abs(y[j]) + file.scales[at(j)]) / (file.end - file.start)
+                      : file.rates[at(j)];
+      changed |= open;
+    }
+    if (!changed) return found;
+    ConsistentPoint other = consistent_point(curve_system(file), file.start, y, rates,
+                                             start_scales(file, start.appears), start.time_scale);
+    if (other.why.empty() && moved_by(file, start, other) < moved) others.push_back(other);
+  }
+  if (others.empty()) return found;
+  for (int j = 0; j < file.size(); ++j) {
+    const double a = others.front().ydot[j], b = others.back().ydot[j];
+    if (!start.appears[at(j)] || std::abs(a - b) <= moved * (std::abs(a) + std::abs(b))) continue;
+    const auto rate = [&](double x) { return compact(x, 6); };
+    found.why = "the equations leave the rate of " + file.variables[at(j)] + " undetermined, " +
+                rate(a) + " or " + rate(b) + ": expected one of them as its guess, rates = { " +
+                file.variables[at(j)] + " = " + rate(a) + " }";
+    return found;
+  }
+  return others.front();
 }
 
 }  // namespace
@@ -138,6 +193,7 @@ EquationStart equation_start(const EquationFile& file) {
   const structure::Signature signature = file.signature();
   start.offsets = *structure::sigma_method(signature);  // the reader saw to an assignment
   start.pantelides = structure::pantelides(signature);
+  start.part = parts_of(signature, start.offsets);
   start.appears.assign(at(n), 0);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
@@ -157,6 +213,7 @@ EquationStart equation_start(const EquationFile& file) {
   start.point =
       consistent_point(curve_system(file), file.start, vector(file.values), vector(file.rates),
                        start_scales(file, start.appears), start.time_scale);
+  start.point = with_other_rates(file, start, vector(file.values), std::move(start.point));
   if (!start.point.why.empty()) {
     start.index_of.assign(at(n), 1);
     return start;

@@ -28,6 +28,7 @@ struct EquationStart {
   SystemJacobian jacobian;      ///< at the point; of no meaning where there is none
   std::vector<int> index_of;    ///< of each variable, 1 to the index: how rough its errors are
   std::vector<char> appears;    ///< whether der() of it stands in an equation
+  std::vector<int> part;        ///< of each variable: one number for those that hang together
   double time_scale = 1;
 
   /// Whether structure gives the differentiation index.

@@ -8,10 +8,23 @@ namespace momenta {
 
 namespace {
 constexpr int largest_dense = 40;
+
+std::vector<char> tested_variables(const EquationStart& start) {
+  const std::size_t n = start.index_of.size();
+  if (start.point.found.index <= 1) return std::vector<char>(n, 1);
+  std::vector<char> tested(n), some(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    tested[j] = start.appears[j] && start.index_of[j] == 1;
+    some[static_cast<std::size_t>(start.part[j])] |= tested[j];
+  }
+  for (std::size_t j = 0; j < n; ++j)
+    if (!some[static_cast<std::size_t>(start.part[j])]) tested[j] = start.appears[j];
+  return tested;
+}
 }  // namespace
 
 EquationSystem::EquationSystem(const EquationFile& file, const EquationStart& start)
-    : file_(file), start_(start), residual_(file), slopes_(file) {
+    : file_(file), start_(start), residual_(file), slopes_(file), tested_(tested_variables(start)) {
   const auto n = static_cast<std::size_t>(file.size());
   const auto& entries = slopes_.entries();
   place_.resize(entries.size());
@@ -70,11 +83,6 @@ bool EquationSystem::start(double /*t*/, double* y, double* ydot) {
   std::copy_n(start_.point.y.data(), size(), y);
   std::copy_n(start_.point.ydot.data(), size(), ydot);
   return true;
-}
-
-bool EquationSystem::differential(int i) const {
-  const auto k = static_cast<std::size_t>(i);
-  return start_.point.found.index <= 1 || (start_.appears[k] && start_.index_of[k] == 1);
 }
 
 double EquationSystem::scale(int i) const {

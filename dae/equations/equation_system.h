@@ -2,15 +2,16 @@
 // A file of equations as integrators of DAEs see it.
 
 #include <momenta/dae/equations/equation_start.h>
-#include <momenta/dae/solver/system.h>
+#include <momenta/dae/solver/filtered_error.h>
 
 namespace momenta {
 
 /// F(t, y, y') = 0 with its exact Jacobian, dense up to 40 unknowns, from the start found before.
-/// Errors of variables of index k are weighed by h^(k−1), as implicit Runge-Kutta methods need; BDF
-/// of index 2 tests no variable of index 2 and none without a derivative, and leaves those of index
-/// 2 out of Newton's norm.
-class EquationSystem final : public DaeSystem {
+/// Errors of variables of index k are weighed by h^(k−1), as implicit Runge-Kutta methods need. BDF
+/// of index 2 tests variables of index 1 with a derivative, and where nothing that hangs together
+/// with a variable of index 2 would be tested, that one; variables of index 2 without a derivative
+/// are left out of Newton's norm.
+class EquationSystem final : public DaeSystem, public OfIndexTwo {
  public:
   /// Both must outlive it. @pre start.point.why is empty
   EquationSystem(const EquationFile& file, const EquationStart& start);
@@ -20,7 +21,8 @@ class EquationSystem final : public DaeSystem {
   bool jacobian(double t, const double* y, const double* ydot, double c, double* values) override;
   const JacobianPattern& pattern() const override { return pattern_; }
   bool start(double t, double* y, double* ydot) override;
-  bool differential(int i) const override;
+  bool differential(int i) const override { return tested_[static_cast<std::size_t>(i)]; }
+  bool is_of_index_two() const override { return start_.point.found.index == 2; }
   double scale(int i) const override;
   Weight weight(int i) const override;
 
@@ -32,6 +34,7 @@ class EquationSystem final : public DaeSystem {
   JacobianPattern pattern_;         ///< empty: dense
   std::vector<std::size_t> place_;  ///< of each entry of slopes_ among the values
   std::size_t stored_ = 0;
+  std::vector<char> tested_;
 };
 
 }  // namespace momenta

@@ -6,6 +6,13 @@
 
 namespace momenta {
 
+void scale_idle_rows(std::vector<double>& scale) {
+  double most = 0;
+  for (const double s : scale) most = std::max(most, s);
+  for (double& s : scale)
+    if (s == 0) s = most > 0 ? most : 1;
+}
+
 AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
                      const std::vector<int>& groups, const std::vector<double>& least,
                      double spread, double apart)
@@ -66,6 +73,7 @@ void AxisScale::of_groups(const std::vector<double>& inertia, const std::vector<
 void AxisScale::softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
                          double fade, std::vector<double>& epsilon) const {
   of_groups(inertia, constraint, epsilon);
+  scale_idle_rows(epsilon);
   for (double& e : epsilon) e *= 1e-2 * fade / far_apart_;
 }
 

@@ -10,6 +10,10 @@
 
 namespace momenta {
 
+/// Rows on which nothing with inertia hangs have no scale, those of a loop between bodies that are
+/// welded together, the axes of a slide on a slide: any positive one does, here the largest.
+void scale_idle_rows(std::vector<double>& scale);
+
 class AxisScale {
  public:
   /// `constraint`: pattern of Φ_q; `groups`, `least` (m): Mechanism::row_groups, least_scales;

@@ -84,7 +84,7 @@ class Search {
           if (jacobian) *jacobian = all.rightCols(free);
           return true;
         },
-        -most, most, request_.most_iterations, places);
+        -most, most, VectorXd::Ones(free), request_.most_iterations, places);
     x.tail(free) = places;
     return end.began;
   }
@@ -136,10 +136,12 @@ class Search {
     least.tail(free).setConstant(-INFINITY);
     most.tail(free).setConstant(INFINITY);
     const VectorXd first = x;
+    VectorXd sizes = VectorXd::Ones(x.size());  // of angles a radian
+    sizes.head(n) = sizes_;
     const LeastSquaresEnd end =
         least_squares_search([this](const VectorXd& at, VectorXd& r,
                                     MatrixXd* jacobian) { return evaluate(at, r, jacobian); },
-                             least, most, request_.most_iterations, x);
+                             least, most, sizes, request_.most_iterations, x);
     start.iterations = end.iterations;
     if (!end.began) {
       start.why = refused_;
@@ -148,7 +150,7 @@ class Search {
     start.cost = 0.5 * end.r.squaredNorm();
     start.cosine = end.cosine;
     constexpr double rounding = 1e-13;  // of r, as of its derivatives
-    start.converged = start.cosine <= converged_cosine ||
+    start.converged = start.cosine <= converged_cosine || end.step <= converged_step ||
                       end.r.norm() <= rounding * std::sqrt(static_cast<double>(end.r.size()));
     start.violation = violation(x.head(n));
     if (start.violation > kept_within && !keep(first, least, most, x, start)) return start;

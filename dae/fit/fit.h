@@ -54,7 +54,8 @@ struct FitStart {
   double slope = WantedErrors::none;
   double violation = 0;             ///< of conditions, the largest; 0: all are kept
   std::vector<double> multipliers;  ///< of conditions, as of KeptCondition
-  /// Conditions are kept, and cosine ≤ 1e-4, or r is rounding, or slope ≤ 1e-6.
+  /// Conditions are kept, and cosine ≤ 1e-4, or Gauss and Newton's step is below 1e-9 of the
+  /// parameters' sizes, or r is rounding, or slope ≤ 1e-6.
   bool converged = false;
   std::string why;  ///< why not, one sentence without its full stop; else empty
 };

@@ -69,7 +69,7 @@ class IdentificationSearch {
           if (!there_is) refused = error_.why();
           return there_is;
         },
-        least_, most_, request_.most_iterations, x);
+        least_, most_, sizes_, request_.most_iterations, x);
     start.iterations = end.iterations;
     if (!end.began) {
       start.why = result_.stopped ? "it was stopped" : refused;

@@ -1,4 +1,5 @@
 #include <ceres/ceres.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/fit/least_squares_search.h>
 
 #include <cmath>
@@ -63,29 +64,34 @@ int search(const Residuals& residuals, Eigen::Index count, const VectorXd& least
   return std::max(0, static_cast<int>(summary.iterations.size()) - 1);
 }
 
-/// Unknowns that a bound holds; the cosine of the others.
-double look(const VectorXd& x, const VectorXd& r, const MatrixXd& jacobian, const VectorXd& least,
-            const VectorXd& most, std::vector<bool>& held) {
-  double cosine = 0;
+/// Unknowns that a bound holds; the cosine and the step of the others.
+void look(const VectorXd& x, const MatrixXd& jacobian, const VectorXd& least, const VectorXd& most,
+          const VectorXd& sizes, LeastSquaresEnd& end, std::vector<bool>& held) {
+  const VectorXd& r = end.r;
+  MatrixXd scaled = jacobian * sizes.asDiagonal();
+  end.cosine = 0;
   for (Eigen::Index j = 0; j < x.size(); ++j) {
     const double slope = jacobian.col(j).dot(r), size = jacobian.col(j).norm() * r.norm();
     const bool stays = (x[j] <= least[j] && slope > 0) || (x[j] >= most[j] && slope < 0);
     held[static_cast<std::size_t>(j)] = stays;
-    if (size > 0 && !stays) cosine = std::max(cosine, std::abs(slope) / size);
+    if (size > 0 && !stays) end.cosine = std::max(end.cosine, std::abs(slope) / size);
+    if (stays) scaled.col(j).setZero();
   }
-  return cosine;
+  const VectorXd step = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(scaled).solve(r);
+  end.step = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
 }
 
 }  // namespace
 
 LeastSquaresEnd least_squares_search(const Residuals& residuals, const VectorXd& least,
-                                     const VectorXd& most, int most_iterations, VectorXd& x) {
+                                     const VectorXd& most, const VectorXd& sizes,
+                                     int most_iterations, VectorXd& x) {
   LeastSquaresEnd end;
   MatrixXd jacobian;
   if (!residuals(x, end.r, &jacobian)) return end;
   end.began = true;
   std::vector<bool> held(static_cast<std::size_t>(x.size()), false);
-  end.cosine = look(x, end.r, jacobian, least, most, held);
+  look(x, jacobian, least, most, sizes, end, held);
   std::fill(held.begin(), held.end(), false);
   for (double before = INFINITY; end.iterations < most_iterations;) {
     VectorXd next = x, r;
@@ -94,7 +100,7 @@ LeastSquaresEnd least_squares_search(const Residuals& residuals, const VectorXd&
     if (!residuals(next, r, &jacobian) || !(r.squaredNorm() <= end.r.squaredNorm())) break;
     x = next;
     end.r = r;
-    end.cosine = look(x, r, jacobian, least, most, held);
+    look(x, jacobian, least, most, sizes, end, held);
     constexpr double less = 1 - 1e-12;
     if (end.cosine <= 1e-3 * converged_cosine || !(r.squaredNorm() < less * before)) break;
     before = r.squaredNorm();

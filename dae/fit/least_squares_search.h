@@ -24,15 +24,18 @@ struct LeastSquaresEnd {
   /// Largest cosine of the angle between r and a column of ∂r/∂x, of unknowns that no bound holds:
   /// 0 at a minimum.
   double cosine = std::numeric_limits<double>::quiet_NaN();
+  /// Largest part of its size by which Gauss and Newton's step would still move such an unknown: of
+  /// an r that is rounding the cosine is any number, and this is rounding.
+  double step = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Above it no minimum is claimed.
-inline constexpr double converged_cosine = 1e-4;
+/// Above both no minimum is claimed.
+inline constexpr double converged_cosine = 1e-4, converged_step = 1e-9;
 
-/// From x, between `least` and `most`, infinite where there is no bound; leaves the best point in
-/// x.
+/// From x, whose `sizes` are > 0, between `least` and `most`, infinite where there is no bound;
+/// leaves the best point in x.
 LeastSquaresEnd least_squares_search(const Residuals& residuals, const Eigen::VectorXd& least,
-                                     const Eigen::VectorXd& most, int most_iterations,
-                                     Eigen::VectorXd& x);
+                                     const Eigen::VectorXd& most, const Eigen::VectorXd& sizes,
+                                     int most_iterations, Eigen::VectorXd& x);
 
 }  // namespace momenta

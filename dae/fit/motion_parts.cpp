@@ -31,12 +31,13 @@ void MotionParts::take_parameters(const VectorXd& theta, bool derivatives,
   if (!derivatives) return;
   values.parameters_by.setZero(values.parameters.size(), theta.size());
   for (Index j = 0; j < theta.size(); ++j) {
-    const double h = sixth_order::part * sizes_[j];
-    for (const auto& [k, weight] : sixth_order::points) {
+    const auto at = [&](std::size_t i, double h) {
       VectorXd near = theta;
-      near[j] += k * h;
-      values.parameters_by.col(j) += weight / h * parameters_at(near);
-    }
+      near[j] += sixth_order::points[i].k * h;
+      return parameters_at(near);
+    };
+    values.parameters_by.col(j) =
+        sixth_order::slope_of(sixth_order::part * sizes_[j], sixth_order::read, at).by;
   }
   for (std::size_t i = 0; i < parameter_names_.size(); ++i)
     for (std::size_t j = 0; j < family_.names().size(); ++j)

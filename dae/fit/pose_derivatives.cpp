@@ -14,11 +14,6 @@ using Eigen::VectorXd;
 
 constexpr double independent = 1e-9;  // pivots of F_q, beside the largest
 
-/// ∂Φ/∂θ_j and ∂y/∂θ_j of one pose, at the same q.
-struct Partial {
-  VectorXd phi, y;
-};
-
 }  // namespace
 
 VectorXd quantities_at(Evaluation<double>& e, const VectorXd& q,
@@ -48,14 +43,13 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
   const auto parameters = static_cast<int>(values.size());
   const auto markers = static_cast<int>(mechanism.scene().markers.size());
   const auto count = static_cast<Eigen::Index>(quantities_.size());
-  std::vector<std::vector<Partial>> partials(
-      poses.size(), std::vector<Partial>(static_cast<std::size_t>(parameters),
-                                         {VectorXd::Zero(m), VectorXd::Zero(count)}));
+  const Eigen::Index whole = count + m;  // y and Φ of a pose
+  std::vector<VectorXd> partials;        // by θ_j, at the same q, pose by pose
   for (int j = 0; j < parameters; ++j) {
-    const double h = sixth_order::part * sizes_[j];
-    for (const auto& [k, of_point] : sixth_order::points) {
+    const double widest = sixth_order::part * sizes_[j];
+    const auto at_point = [&](std::size_t point, double h) {
       VectorXd near = values;
-      near[j] += k * h;
+      near[j] += sixth_order::points[point].k * h;
       const std::unique_ptr<Mechanism> other = family_.at(near);
       if (other->nq() != mechanism.nq() || other->nv() != nv || other->m() != m)
         throw SceneError("with " + family_.names()[static_cast<std::size_t>(j)] + " = " +
@@ -63,21 +57,16 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
                          " the mechanism has other coordinates or equations; expected a "
                          "parameter that changes numbers alone");
       const auto e = other->evaluation<double>();
-      VectorXd phi(m);
-      const double weight = of_point / h;
+      VectorXd all(whole * static_cast<Eigen::Index>(poses.size()));
       for (std::size_t i = 0; i < poses.size(); ++i) {
-        Partial& partial = partials[i][static_cast<std::size_t>(j)];
-        partial.y += weight * quantities_at(*e, poses[i], quantities_, markers);
-        e->positions(phi.data());
-        partial.phi += weight * phi;
+        const auto first = whole * static_cast<Eigen::Index>(i);
+        all.segment(first, count) = quantities_at(*e, poses[i], quantities_, markers);
+        e->positions(all.data() + first + count);
       }
-    }
+      return all;
+    };
+    partials.push_back(sixth_order::slope_of(widest, sixth_order::exact, at_point).by);
   }
-  // A coordinate is no function of θ at the same q: its differences are rounding.
-  for (auto& of_pose : partials)
-    for (Partial& partial : of_pose)
-      for (Eigen::Index k = 0; k < count; ++k)
-        if (quantities_[static_cast<std::size_t>(k)].coordinate >= 0) partial.y[k] = 0;
 
   ScaledLoops loops(mechanism);
   Evaluation<double>& e = loops.evaluation();
@@ -86,6 +75,7 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
   std::vector<double> moved(6 * static_cast<std::size_t>(markers));
   derivatives.assign(poses.size(), MatrixXd::Zero(count, parameters + 1));
   for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto first = whole * static_cast<Eigen::Index>(i);
     loops.gap(0, poses[i]);  // places it
     Fq.setZero();
     const std::vector<double> entries = loops.jacobian();
@@ -101,7 +91,8 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
     for (int j = 0; j <= parameters; ++j) {
       right.setZero();
       if (j < parameters)
-        right.head(m) = -loops.in_units(partials[i][static_cast<std::size_t>(j)].phi);
+        right.head(m) =
+            -loops.in_units(partials[static_cast<std::size_t>(j)].segment(first + count, m));
       else
         right[m] = 1 / loops.units().rates[rate];
       const VectorXd u = qr.solve(right).cwiseProduct(loops.units().rates);
@@ -116,7 +107,9 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
             quantity.coordinate >= 0
                 ? qdot[quantity.coordinate]
                 : moved[static_cast<std::size_t>(6 * quantity.marker + 3 + quantity.component)];
-        if (j < parameters) derivatives[i](k, j) += partials[i][static_cast<std::size_t>(j)].y[k];
+        // A coordinate is no function of θ at the same q: its differences are rounding.
+        if (j < parameters && quantity.coordinate < 0)
+          derivatives[i](k, j) += partials[static_cast<std::size_t>(j)][first + k];
       }
     }
   }

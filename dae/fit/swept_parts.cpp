@@ -172,14 +172,15 @@ bool SweptParts::at(const VectorXd& theta, bool derivatives, MotionValues& value
     }
     if (!take(theta, table)) return false;
     for (Index j = 0; derivatives && j < theta.size(); ++j) {
-      by.push_back(MatrixXd::Zero(table.rows(), table.cols()));
-      const double h = sixth_order::part * sizes_[j];
-      for (const auto& [k, weight] : sixth_order::points) {
+      const auto at_point = [&](std::size_t i, double h) {
         VectorXd other = theta;
-        other[j] += k * h;
-        if (!take(other, near)) return false;
-        by.back() += weight / h * near;
-      }
+        other[j] += sixth_order::points[i].k * h;
+        if (!take(other, near)) throw SceneError(why_);
+        return VectorXd(near.reshaped());
+      };
+      by.push_back(
+          sixth_order::slope_of(sixth_order::part * sizes_[j], sixth_order::iterated, at_point)
+              .by.reshaped(table.rows(), table.cols()));
     }
     values.parts.clear();
     values.parts_by.clear();

@@ -2,13 +2,21 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/loop/loop_weights.h>
+#include <momenta/dae/loop_word.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace momenta {
+namespace {
+
+constexpr double near_pivot = 1e-2;  // of the best: near a singular pose
+
+}  // namespace
 
 DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
                  const FormOptions& options, const Start& start, Unknowns unknowns)
@@ -100,6 +108,13 @@ std::vector<double> DaeForm::initial(const Start& start) {
 }
 
 bool DaeForm::start(double t, double* y, double* ydot) {
+  if (unknowns_ == Unknowns::momenta && layout_.m > 0)
+    if (const std::string singular =
+            mass_without_inverse(mechanism_, *plain_.e, start_.t, start_.q.data());
+        !singular.empty())
+      return fail("'" + name_ + "' takes rates from M u = p, and " + singular +
+                  "; expected a form whose rates obey the " + loop_word(mechanism_) +
+                  "s, as momentum-index2");
   const auto y0 = initial(start_);
   std::copy(y0.begin(), y0.end(), y);
   std::copy_n(y + layout_.s(), softened_about_.size(), softened_about_.begin());
@@ -149,15 +164,44 @@ bool DaeForm::near_singular(double t, const double* y) {
     d.always_faded = layout_.m;
     for (auto* v : {&d.u, &d.udot}) v->resize(static_cast<std::size_t>(layout_.nv));
     for (auto* v : {&d.sigma, &d.lambda}) v->assign(static_cast<std::size_t>(layout_.m), 0.0);
+    if (!epsilon_.empty()) look_beside_start();
   }
-  std::fill(d.udot.begin(), d.udot.end(), 0.0);
-  if (!d.solver->free_velocity(t, y, d.udot.data(), d.u.data())) return false;
+  if (!find_pivots(t, y)) return false;
   const LoopSolver::Pivots pivots = d.solver->pivots();
   d.always_faded = std::min(d.always_faded, pivots.faded);
   const double weakest = pivots.faded > d.always_faded ? 0 : pivots.weakest;
   d.strongest = std::max(d.strongest, weakest);
-  constexpr double near = 1e-2;
-  return weakest < near * d.strongest;
+  return weakest < near_pivot * d.strongest;
+}
+
+bool DaeForm::find_pivots(double t, const double* q) {
+  OdeRestart& d = ode_restart_;
+  std::fill(d.udot.begin(), d.udot.end(), 0.0);
+  return d.solver->free_velocity(t, q, d.udot.data(), d.u.data());
+}
+
+/// A row that is redundant everywhere has no pivot beside the start either, or, a way δ off the
+/// loops' poses along a straight line, one of the order δ⁴; where the start is a singular pose it
+/// has one of the order δ².
+void DaeForm::look_beside_start() {
+  constexpr double aside = 0.2;  // [rad or lengths of the scene]
+  OdeRestart& d = ode_restart_;
+  const LoopUnits units(mechanism_);
+  for (const Eigen::VectorXd& way : {start_.u, start_.udot}) {
+    const double largest = way.cwiseQuotient(units.rates).cwiseAbs().maxCoeff();
+    if (!(largest > 0)) continue;
+    const Eigen::VectorXd step = way * (aside / largest);
+    Eigen::VectorXd q = start_.q, qdot(layout_.nq);
+    plain_.e->coordinate_rates(q.data(), step.data(), qdot.data());
+    q += qdot;
+    mechanism_.tree().normalise(q);
+    if (!find_pivots(start_.t, q.data())) return;
+    const LoopSolver::Pivots beside = d.solver->pivots();
+    if (beside.weakest < near_pivot) return;
+    d.always_faded = beside.faded;
+    d.strongest = beside.weakest;
+    return;
+  }
 }
 
 OdeSystem* DaeForm::ode_restart(double t, const double* y, double* state) {

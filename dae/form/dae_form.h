@@ -129,6 +129,10 @@ class DaeForm : public Form, public DaeSystem {
   void complete(double t, const double* u, const double* udot, const double* lambda, double* y,
                 double* ydot);
   void find_redundancy(const Start& start);
+  /// Pivots of the loops at a pose, in the solver of ode_restart_; false: there are none.
+  bool find_pivots(double t, const double* q);
+  /// Which rows have no pivot everywhere, where rows have none at the start.
+  void look_beside_start();
   /// Dense, or a pattern and the columns that can share a direction.
   void analyse_pattern();
 

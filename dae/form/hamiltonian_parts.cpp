@@ -2,6 +2,7 @@
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 
@@ -42,9 +43,16 @@ class MechanismPlace final : public HamiltonianPlace {
       e_->constraint_forces(sigma, work_.data());
       for (std::size_t i = 0; i < work_.size(); ++i) u[i] -= work_[i];
     }
-    factor_.inward(u);
-    for (std::size_t i = 0; i < work_.size(); ++i) u[i] *= factor_.inverse_pivots()[i];
-    factor_.outward(u);
+    solve_mass(u);
+  }
+  void solve_mass(double* x) override {
+    factor_.inward(x);
+    for (std::size_t i = 0; i < work_.size(); ++i) x[i] *= factor_.inverse_pivots()[i];
+    factor_.outward(x);
+  }
+  void mass_times(const double* x, double* p) override {
+    momentum(x, p);
+    for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= prescribed_[i];
   }
   void velocities(const double* u, double* rate) override {
     e_->move(u);
@@ -106,6 +114,10 @@ bool HamiltonianParts::prescribed() const {
 
 std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {
   return std::make_unique<MechanismPlace>(system_);
+}
+
+std::string HamiltonianParts::without_inverse(double t, const double* q) {
+  return mass_without_inverse(system_, *parts().e, t, q);
 }
 
 void HamiltonianParts::coordinate_rates(const double* q, const double* u, double* qdot) {

@@ -20,6 +20,7 @@ class HamiltonianParts : public ConstrainedHamiltonian {
   int multipliers() const override { return system_.m(); }
   bool prescribed() const override;
   std::unique_ptr<HamiltonianPlace> place() const override;
+  std::string without_inverse(double t, const double* q) override;
   void coordinate_rates(const double* q, const double* u, double* qdot) override;
   void move(const double* q, const double* delta, double* moved) override;
 

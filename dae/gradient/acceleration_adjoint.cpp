@@ -46,9 +46,8 @@ AccelerationAdjoint::AccelerationAdjoint(const Mechanism& mechanism, const OdeFo
       corrections_(mechanism, others, forces_),
       by_q_(VectorXd::Zero(nv_)),
       by_u_(by_q_) {
-  any_rows_ = std::any_of(others.begin(), others.end(), [](const OtherParameter& other) {
-    return !other.evaluations.empty() && other.numbers.size() == 0;
-  });
+  any_rows_ = std::any_of(others.begin(), others.end(),
+                          [](const OtherParameter& other) { return other.by_rows(); });
   placed_ = std::any_of(others.begin(), others.end(),
                         [](const OtherParameter& other) { return other.of_places; });
   if (at_once() == 0) return;
@@ -115,7 +114,7 @@ bool AccelerationAdjoint::rates(const AdjointState& at, const VectorXd& w, Vecto
   x_ << at.q, u, at.slope, at.sigma;
   weights_.resize(nv_ + m_);
   weights_ << -nu_, -mu_;
-  add_by_parameters(others_, rows, x_, weights_, plain_, by_parameters);
+  add_by_parameters(others_, rows, x_, weights_, by_parameters);
   return true;
 }
 

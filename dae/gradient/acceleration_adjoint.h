@@ -78,7 +78,7 @@ class AccelerationAdjoint final : public FormAdjoint {
   std::unique_ptr<NumberSlopes> mixed_numbers_;  ///< of D_c D_(0,ν,μ) L*_θ
   bool placed_ = false;                          ///< some θ changes places
   bool any_rows_ = false;                        ///< some θ is taken from rows of other mechanisms
-  Eigen::VectorXd nu_, mu_, plain_, by_q_, by_u_, shifted_, sigma_, x_, weights_;
+  Eigen::VectorXd nu_, mu_, by_q_, by_u_, shifted_, sigma_, x_, weights_;
 };
 
 }  // namespace momenta

@@ -105,7 +105,7 @@ bool CorrectionAdjoint::position(double t, const VectorXd& q, const Numbers& num
   }
   CorrectionRows rows{rows_};
   rows.t = t;
-  add_by_parameters(others_, rows, joined(q, delta_, nu_), -joined(a_, b_, VectorXd(0)), plain_,
+  add_by_parameters(others_, rows, joined(q, delta_, nu_), -joined(a_, b_, VectorXd(0)),
                     by_parameters);
   return true;
 }
@@ -131,7 +131,7 @@ bool CorrectionAdjoint::velocities(double t, const VectorXd& q, const VectorXd& 
   rows.t = t;
   VectorXd x(q.size() + 2 * n + rows_.m);
   x << q, u, v, nu_;
-  add_by_parameters(others_, rows, x, -joined(a_, b_, VectorXd(0)), plain_, by_parameters);
+  add_by_parameters(others_, rows, x, -joined(a_, b_, VectorXd(0)), by_parameters);
   return true;
 }
 

@@ -56,7 +56,7 @@ class CorrectionAdjoint {
   std::unique_ptr<Evaluation<Dual8>> dual_;
   std::vector<Dual8> x_, out_;
   std::vector<Eigen::VectorXd> passed_;  ///< q before each correction
-  Eigen::VectorXd delta_, nu_, a_, b_, slope_, force_, none_, still_, plain_;
+  Eigen::VectorXd delta_, nu_, a_, b_, slope_, force_, none_, still_;
 };
 
 }  // namespace momenta

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 
 namespace momenta {
 namespace {
@@ -40,6 +41,36 @@ void expect_smooth_motion(const Scene& scene) {
                        "that push back ('stop_stiffness'), or no 'restitution'");
 }
 
+namespace {
+
+/// What a formula has corners or jumps by, one of its words; empty: none.
+std::string_view corner_of(const Scene& scene, const std::string& law) {
+  for (const std::string_view word : {"if(", "floor(", "sign(", "abs(", "min(", "max("})
+    if (law.find(word) != std::string::npos) return word;
+  for (const FunctionSpec& f : scene.functions)
+    if (f.kind != "cubic" && law.find(f.name + "(") != std::string::npos) return f.name;
+  return {};
+}
+
+}  // namespace
+
+bool has_corners(const Scene& scene) {
+  const auto with_one = [&](const std::string& law) { return !corner_of(scene, law).empty(); };
+  return std::any_of(
+             scene.joints.begin(), scene.joints.end(),
+             [](const JointSpec& joint) { return has_stops(joint) || joint.friction != 0; }) ||
+         std::any_of(
+             scene.forces.begin(), scene.forces.end(),
+             [&](const ForceSpec& force) {
+               return has_stops(force) || force.dead_band != 0 || with_one(force.law) ||
+                      std::any_of(force.force_law.begin(), force.force_law.end(), with_one) ||
+                      std::any_of(force.torque_law.begin(), force.torque_law.end(), with_one);
+             }) ||
+         std::any_of(scene.drives.begin(), scene.drives.end(), [](const DriveSpec& drive) {
+           return drive.kind == "step" || drive.kind == "table" || !law_corner(drive).empty();
+         });
+}
+
 std::vector<std::string> corners(const Scene& scene, const std::string& of_functional) {
   std::vector<std::string> remarks;
   const std::string ending =
@@ -61,11 +92,8 @@ std::vector<std::string> corners(const Scene& scene, const std::string& of_funct
     laws.insert(laws.end(), force.force_law.begin(), force.force_law.end());
     laws.insert(laws.end(), force.torque_law.begin(), force.torque_law.end());
     for (const std::string& law : laws)
-      for (const char* word : {"if(", "floor(", "sign(", "abs(", "min(", "max("})
-        if (law.find(word) != std::string::npos) {
-          remarks.push_back("a force by the formula " + reading::in_quotes(law) + ending);
-          break;
-        }
+      if (!corner_of(scene, law).empty())
+        remarks.push_back("a force by the formula " + reading::in_quotes(law) + ending);
   }
   return remarks;
 }

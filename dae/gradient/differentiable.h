@@ -17,6 +17,11 @@ void expect_differentiable(const RunSettings& settings, const Mechanism& mechani
 /// that rub by their reactions, rigid stops
 void expect_smooth_motion(const Scene& scene);
 
+/// Whether the scene has corners that a motion may pass: stops, dead bands, friction, whose slope
+/// turns within a small rate, laws of steps and tables, whose f̈ turns, and formulas with functions
+/// that have some.
+bool has_corners(const Scene& scene);
+
 /// What of the scene, and of the functional's function by this name, is not smooth everywhere: a
 /// sentence each. Empty `of_functional`: none.
 std::vector<std::string> corners(const Scene& scene, const std::string& of_functional);

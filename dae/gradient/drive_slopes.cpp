@@ -11,18 +11,11 @@ namespace {
 /// with(place among the numbers, its derivative by θ at t) for f and ḟ of each drive.
 template <class With>
 void each_number(const NumberSlopes& numbers, const OtherParameter& other, double t, With&& with) {
-  if (other.laws.empty()) return;
-  for (std::size_t d = 0; d < other.laws.front().size(); ++d) {
-    double by_f = 0, by_rate = 0;
-    for (std::size_t k = 0; k < other.laws.size(); ++k) {
-      double f, rate, second;
-      other.laws[k][d].evaluate(t, f, rate, second);
-      by_f += sixth_order::points[k].weight / other.h * f;
-      by_rate += sixth_order::points[k].weight / other.h * rate;
-    }
+  for (std::size_t d = 0; d < other.drives; ++d) {
+    const VectorXd& by = other.near->law_slope(d, t);
     const Index at = numbers.drives() + 2 * static_cast<Index>(d);
-    with(at, by_f);
-    with(at + 1, by_rate);
+    with(at, by[0]);
+    with(at + 1, by[1]);
   }
 }
 

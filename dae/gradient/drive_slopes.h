@@ -4,7 +4,8 @@
 //
 //   Σ_t ∂/∂f(t) ∂f(t)/∂θ + ∂/∂ḟ(t) ∂ḟ(t)/∂θ
 //
-// is taken at each time by itself, ∂f/∂θ and ∂ḟ/∂θ from laws with neighbouring θ (sixth_order.h).
+// is taken at each time by itself, ∂f/∂θ and ∂ḟ/∂θ from the laws of neighbours (neighbours.h),
+// which are linear in θ (linear_formulas.h).
 
 #include <momenta/dae/gradient/number_slopes.h>
 #include <momenta/dae/gradient/row_derivatives.h>

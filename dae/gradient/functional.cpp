@@ -97,16 +97,15 @@ void Functional::take_markers(double t, const VectorXd& q, const VectorXd& u, co
             out[static_cast<std::size_t>(i)].b[static_cast<std::size_t>(k)];
     }
   }
-  VectorXd there(size);
   for (Index j = 0; j < dq.cols(); ++j) {
     const OtherParameter& other = others_[static_cast<std::size_t>(j)];
-    for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
-      Evaluation<double>& e = *other.evaluations[k];
-      e.place(t, q.data());
-      e.move(u.data());
-      e.markers(there.data());
-      marker_tangents_.col(j) += sixth_order::points[k].weight / other.h * there;
-    }
+    if (other.by_mechanisms)
+      marker_tangents_.col(j) +=
+          other.near->slope(size, [&](Evaluation<double>& e, VectorXd& there) {
+            e.place(t, q.data());
+            e.move(u.data());
+            e.markers(there.data());
+          });
   }
 }
 
@@ -124,16 +123,19 @@ void Functional::take_energy(double t, const VectorXd& q, const VectorXd& u, con
   for (Index j = 0; j < dq.cols(); ++j) {
     const double along = std::max(dq.col(j).cwiseAbs().maxCoeff() / (1 + q.cwiseAbs().maxCoeff()),
                                   du.col(j).cwiseAbs().maxCoeff() / (1 + u.cwiseAbs().maxCoeff()));
-    if (along > 0) {
-      const double s = sixth_order::part / along;
-      for (const auto& [k, weight] : sixth_order::points)
-        energy_tangents_[j] +=
-            weight / s * energy(*e_, t, q + k * s * dq.col(j), u + k * s * du.col(j));
-    }
-    const OtherParameter& other = others_[static_cast<std::size_t>(j)];
-    for (std::size_t k = 0; k < other.evaluations.size(); ++k)
+    if (along > 0)
       energy_tangents_[j] +=
-          sixth_order::points[k].weight / other.h * energy(*other.evaluations[k], t, q, u);
+          sixth_order::slope_of(sixth_order::part / along, sixth_order::exact,
+                                [&](std::size_t i, double h) {
+                                  const double s = sixth_order::points[i].k * h;
+                                  return VectorXd(VectorXd::Constant(
+                                      1, energy(*e_, t, q + s * dq.col(j), u + s * du.col(j))));
+                                })
+              .by[0];
+    const OtherParameter& other = others_[static_cast<std::size_t>(j)];
+    if (other.by_mechanisms)
+      energy_tangents_[j] += other.near->slope(
+          1, [&](Evaluation<double>& e, VectorXd& there) { there[0] = energy(e, t, q, u); })[0];
   }
 }
 

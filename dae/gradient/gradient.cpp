@@ -4,6 +4,7 @@
 #include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/differentiable.h>
 #include <momenta/dae/gradient/gradient.h>
+#include <momenta/dae/gradient/law_jumps.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_adjoint.h>
 #include <momenta/dae/gradient/start_tangents.h>
@@ -99,7 +100,11 @@ void Asked::forward() {
     result.remarks.push_back(std::move(remark));
   FormTangents tangents(mechanism, form, others);
   const auto directions = static_cast<int>(result.variables.size());
-  TangentSystem system(form, tangents, request.integral ? &*functional : nullptr, directions);
+  VectorXd sizes(directions);
+  for (int j = 0; j < directions; ++j)
+    sizes[j] = result.variables[static_cast<std::size_t>(j)].size;
+  TangentSystem system(form, tangents, request.integral ? &*functional : nullptr, sizes,
+                       has_corners(mechanism.scene()));
   const std::vector<double> y0 = system.initial(form.initial(start), tangents_at_start);
   IntegrationOptions integration = options();
   integration.rtol *= system.tolerance_factor();
@@ -142,8 +147,23 @@ void Asked::forward() {
       result.times.push_back(t);
       return true;
     };
-  if (request.progress)
-    observer.step = [&](double, double t, const Interpolant&) { return request.progress(t); };
+  LawJumps jumps(mechanism);
+  std::vector<double> inside(y0.size()), rates(y0.size());
+  if (request.progress || jumps.any())
+    observer.step = [&](double t0, double t1, const Interpolant& between) {
+      if (jumps.any())
+        lost = jumps.in_step(t0, t1, [&](double t, VectorXd& q, VectorXd& u) {
+          between(t, inside.data());
+          const bool of_form = form.momentum_like() && jumps.takes_rates();
+          if (of_form && !form.rhs(t, inside.data(), rates.data())) return false;
+          q = Eigen::Map<const VectorXd>(inside.data(), mechanism.nq());
+          u = Eigen::Map<const VectorXd>(
+              form.momentum_like() ? form.rates().data() : inside.data() + mechanism.nq(),
+              mechanism.nv());
+          return true;
+        });
+      return lost.empty() && (!request.progress || request.progress(t1));
+    };
   const IntegrationResult run =
       integrate(s.integrator, system, start.t, y0, times, integration, observer);
   if (!run.done)
@@ -235,12 +255,18 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
           "ascending times from 0 on");
     s.end_time = request.times.back();
   }
+  const bool turns = has_corners(mechanism.scene()) && s.step == 0;
   const std::string refused = no_adjoint(mechanism, request.trajectory || !request.outputs.empty());
   if (request.mode == GradientMode::adjoint && !refused.empty())
     throw std::invalid_argument(refused);
   result.adjoint = request.mode == GradientMode::adjoint ||
-                   (request.mode == GradientMode::automatic && refused.empty() &&
+                   (request.mode == GradientMode::automatic && refused.empty() && !turns &&
                     result.variables.size() > most_forward);
+  if (result.adjoint && turns)
+    result.remarks.push_back(
+        "there are stops, dead bands, friction or formulas with corners, at which derivatives turn "
+        "where the motion is smooth, and steps of an adjoint follow the motion alone: expected the "
+        "mode 'forward' for more digits");
 
   const Start start = assemble(mechanism).start;
   FormRunner runner(mechanism, start, s, request.max_cpu_seconds);  // completes the settings
@@ -288,6 +314,7 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
                      "and derivatives along the motion");
   for (std::size_t j = 0; j < result.variables.size(); ++j) {
     const RunVariable& v = result.variables[j];
+    result.digits.push_back(others[j].near ? others[j].near->digits() : 16);
     if (result.gradient.size() > 0 &&
         std::abs(result.gradient[static_cast<Eigen::Index>(j)]) * v.size <=
             effect * std::abs(result.value))

@@ -11,8 +11,9 @@
 // which one sweep serves all θ. Derivation: docs/theory/gradients.md.
 //
 // Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Formulas with
-// corners are differentiated on the piece they are on. The mechanism is integrated as it is
-// written.
+// corners are differentiated on the piece they are on; steps of a method with error control then
+// follow the tangents too, which turn where the motion is smooth. The mechanism is integrated as it
+// is written.
 
 #include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/study/run_result.h>
@@ -54,13 +55,16 @@ struct GradientRequest {
 
 /// What came out.
 struct GradientResult {
-  std::string scene;                        ///< its name
-  RunSettings settings;                     ///< as run, with the gains in force
-  std::string of;                           ///< as asked
-  bool integral = false;                    ///< as asked
-  double value = 0;                         ///< J
-  std::vector<RunVariable> variables;       ///< θ
-  Eigen::VectorXd gradient;                 ///< dJ/dθ, in the unit of J over that of θ
+  std::string scene;                   ///< its name
+  RunSettings settings;                ///< as run, with the gains in force
+  std::string of;                      ///< as asked
+  bool integral = false;               ///< as asked
+  double value = 0;                    ///< J
+  std::vector<RunVariable> variables;  ///< θ
+  Eigen::VectorXd gradient;            ///< dJ/dθ, in the unit of J over that of θ
+  /// Of θ by which rows of equations are differences of neighbouring scenes: to how many digits
+  /// those of fourth order agree with them; of others 16.
+  std::vector<double> digits;
   std::vector<std::string> without_effect;  ///< names of θ whose part of J is below 1e-10 of it
   std::vector<std::string> remarks;         ///< sentences on what is not smooth
   bool adjoint = false;                     ///< by a sweep back
@@ -81,10 +85,10 @@ struct GradientResult {
 /// Cost beside that of a run, forward: a stage takes an evaluation of the sweeps in dual numbers
 /// for eight θ, or where they do not carry the loops, and on accelerations, one or two of rows and
 /// the factorisation of the matrix of (7); and of parameters that are no numbers of number_slopes.h
-/// six plain evaluations of rows each. Adjoint: an evaluation of the sweeps in dual numbers of one
-/// direction, or where they do not carry the loops two of rows and that factorisation, for all θ;
-/// six plain evaluations for each parameter that is no number of number_slopes.h; a state of memory
-/// a stage (recorded_run.h).
+/// six plain evaluations of rows each, or more where these are not smooth. Adjoint: an evaluation
+/// of the sweeps in dual numbers of one direction, or where they do not carry the loops two of rows
+/// and that factorisation, for all θ; six plain evaluations for each parameter that is no number of
+/// number_slopes.h; a state of memory a stage (recorded_run.h).
 GradientResult gradient(const SceneText& scene, const GradientRequest& request);
 
 }  // namespace momenta

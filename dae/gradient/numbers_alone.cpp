@@ -97,10 +97,10 @@ void take_places(Scene& other, const Scene& own, Forces known) {
 /// that they call.
 void take_drives(Scene& other, const Scene& own) {
   for (std::size_t i = 0; i < own.drives.size(); ++i)
-    take(other.drives[i], own.drives[i], &DriveSpec::coefficients, &DriveSpec::offset,
-         &DriveSpec::amplitude, &DriveSpec::frequency, &DriveSpec::phase, &DriveSpec::from,
-         &DriveSpec::to, &DriveSpec::start, &DriveSpec::duration, &DriveSpec::times,
-         &DriveSpec::values, &DriveSpec::law, &DriveSpec::functions);
+    take(other.drives[i], own.drives[i], &DriveSpec::kind, &DriveSpec::coefficients,
+         &DriveSpec::offset, &DriveSpec::amplitude, &DriveSpec::frequency, &DriveSpec::phase,
+         &DriveSpec::from, &DriveSpec::to, &DriveSpec::start, &DriveSpec::duration,
+         &DriveSpec::times, &DriveSpec::values, &DriveSpec::law, &DriveSpec::functions);
   other.functions = own.functions;
 }
 

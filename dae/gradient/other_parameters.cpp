@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/dae/gradient/linear_formulas.h>
 #include <momenta/dae/gradient/numbers_alone.h>
 #include <momenta/dae/gradient/other_parameters.h>
 
@@ -12,18 +12,25 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The derivative of the numbers made of these scenes, at θ + k h; empty where a difference of
-/// fourth order has another: at θ they jump, as where a frame is chosen anew.
-VectorXd numbers_by(const NumberSlopes& slopes, double h, const std::vector<Scene>& scenes) {
-  VectorXd sixth = VectorXd::Zero(slopes.size()), fourth = sixth;
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const VectorXd made = slopes.numbers(scenes[i]);
-    if (made.size() != sixth.size()) return {};
-    sixth += sixth_order::points[i].weight / h * made;
-    if (i < sixth_order::fourth.size()) fourth += sixth_order::fourth[i] / h * made;
-  }
-  if (!((sixth - fourth).cwiseAbs().maxCoeff() <= 1e-4 * sixth.cwiseAbs().maxCoeff())) return {};
-  return sixth;
+/// The derivative of the numbers that scenes near θ have; empty where a difference of fourth order
+/// has another: at θ they jump, as where a frame is chosen anew.
+VectorXd numbers_by(const NumberSlopes& slopes, Neighbours& near) {
+  double of = 0;
+  std::vector<VectorXd> made;
+  const sixth_order::Slope slope =
+      sixth_order::slope_of(near.h(), sixth_order::read, [&](std::size_t i, double h) {
+        if (h != of) {
+          made.clear();
+          for (const Scene& scene : near.scenes(h)) made.push_back(slopes.numbers(scene));
+          if (std::any_of(made.begin(), made.end(),
+                          [&](const VectorXd& all) { return all.size() != slopes.size(); }))
+            made.assign(made.size(), VectorXd());
+          of = h;
+        }
+        return made[i];
+      });
+  if (slope.by.size() == 0 || !(slope.apart <= 1e-4 * slope.by.cwiseAbs().maxCoeff())) return {};
+  return slope.by;
 }
 
 /// Numbers of bodies', joints', loops' and springs' own, of as many of these as share nothing by
@@ -104,7 +111,7 @@ class OwnNumbers {
             fourth.segment(range.first, range.count) += sixth_order::fourth[i] / all[j].h * its;
         }
       // Where it jumps it is taken alone, and the rest with it.
-      if (!((taken[a] - fourth).cwiseAbs().maxCoeff() <= 1e-4 * taken[a].cwiseAbs().maxCoeff()))
+      if (!((taken[a] - fourth).cwiseAbs().maxCoeff() <= 1e-6 * taken[a].cwiseAbs().maxCoeff()))
         return false;
     }
     for (std::size_t a = 0; a < together.size(); ++a)
@@ -148,24 +155,25 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
       other.starts_at_once = at_once.starts;
       continue;
     }
-    std::vector<Scene> scenes;
-    const auto read = [&] {
+    const auto scenes = [scene, v, &own = mechanism.scene()](double h) {
+      std::vector<Scene> near;
       for (const auto& [k, weight] : sixth_order::points)
-        scenes.push_back(scene.scene({{v.name, v.value + k * other.h}}));
+        near.push_back(scene.scene({{v.name, v.value + k * h}}));
+      make_formulas_linear(own, h, near);
+      return near;
     };
+    auto near = std::make_unique<Neighbours>(v, other.h, scenes, mechanism, scene.options);
     if (slopes && other.numbers.size() == 0) {
-      read();
       const auto change = [&](const NumbersAlone& alone) {
         Change largest = Change::inertias_and_forces;
-        for (const Scene& made : scenes) largest = std::max(largest, alone.of(made));
+        for (const Scene& made : near->scenes()) largest = std::max(largest, alone.of(made));
         return largest;
       };
       const Change whole = change(*same);
       VectorXd numbers;
-      if (whole != Change::more) numbers = numbers_by(*slopes, other.h, scenes);
+      if (whole != Change::more) numbers = numbers_by(*slopes, *near);
       const bool known = numbers.size() > 0, of_places = known && whole >= Change::places;
-      if (of_places && whole == Change::drives)
-        for (const Scene& made : scenes) other.laws.push_back(build_valid_tree(made).drives);
+      if (of_places && whole == Change::drives) other.drives = mechanism.tree().drives.size();
       if (known && plain && change(*plain) == Change::more) {
         other.at_start = std::move(numbers);
         other.starts_at_once = at_once.slopes_of_start && (!of_places || at_once.starts);
@@ -174,23 +182,15 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
         other.of_places = of_places;
       }
     }
+    bool makes = true;
     if (other.numbers.size() > 0) {
       other.starts_at_once = at_once.slopes_of_start && (!other.of_places || at_once.starts);
-      const bool makes =
+      makes =
           at_once.makes_all || !other.starts_at_once || (other.of_places && at_once.makes_places);
-      if (!makes) continue;
     }
-    if (scenes.empty()) read();
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-      other.mechanisms.push_back(std::make_unique<Mechanism>(std::move(scenes[i]), scene.options));
-      const Mechanism& made = *other.mechanisms.back();
-      if (made.nq() != mechanism.nq() || made.nv() != mechanism.nv() || made.m() != mechanism.m())
-        throw SceneError("with " + v.name + " = " +
-                         reading::digits(v.value + sixth_order::points[i].k * other.h) +
-                         " the mechanism has other coordinates or equations; expected a parameter "
-                         "that changes numbers alone");
-      other.evaluations.push_back(made.evaluation<double>());
-    }
+    other.by_mechanisms = makes;
+    if (makes) near->make();
+    if (makes || other.drives > 0) other.near = std::move(near);
   }
   return all;
 }

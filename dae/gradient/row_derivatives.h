@@ -3,11 +3,11 @@
 //
 //   dr_j = (∂r/∂x) dx_j + ∂r/∂θ_j,
 //
-// the first exact, by dual numbers, eight directions at a time; the second by sixth_order.h, from
-// evaluations of the mechanism with other θ_j at the same x.
+// the first exact, by dual numbers, eight directions at a time; the second from evaluations of
+// mechanisms with other θ_j at the same x (neighbours.h), in which formulas are linear in θ_j
+// (linear_formulas.h).
 
-#include <momenta/core/scalar/sixth_order.h>
-#include <momenta/core/scene/drive.h>
+#include <momenta/dae/gradient/neighbours.h>
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
@@ -17,36 +17,42 @@
 
 namespace momenta {
 
-/// Evaluations at θ_j + k h, in the order of sixth_order::points; none: nothing depends on θ_j but
-/// where the motion starts, or numbers that are taken at once. `numbers`: derivatives by θ_j of the
-/// numbers of number_slopes.h, where θ_j changes these alone; else empty.
+/// What a run knows of θ_j beside its own mechanism.
 struct OtherParameter {
-  double h = 0;
+  double h = 0;  ///< of differences, the widest
+  /// Derivatives by θ_j of the numbers of number_slopes.h, where θ_j changes these alone; else
+  /// empty.
   Eigen::VectorXd numbers;
   bool of_places = false;  ///< places of joints, loops or springs are among these, or `laws`
-  /// The laws of the tree's drives at θ_j + k h, in the order of sixth_order::points, where θ_j
-  /// changes some; else empty. Numbers of drives are left out of `numbers`.
-  std::vector<std::vector<MotionLaw>> laws;
+  /// Of the tree, where θ_j changes laws of some; numbers of drives are left out of `numbers`.
+  std::size_t drives = 0;
   Eigen::VectorXd at_start;     ///< the same where the start alone is made of them, rows are not
   bool starts_at_once = false;  ///< what the start has of θ_j is that of start_adjoint.h
-  std::vector<std::unique_ptr<Mechanism>> mechanisms;
-  std::vector<std::unique_ptr<Evaluation<double>>> evaluations;
+  /// Null: nothing depends on θ_j but where the motion starts, or numbers that are taken at once.
+  std::unique_ptr<Neighbours> near;
+  bool by_mechanisms = false;  ///< those of `near` are made; else it has laws alone
+  /// Whether rows are differences.
+  bool by_rows() const { return by_mechanisms && numbers.size() == 0; }
 };
 
-/// sum_j += weightsᵀ ∂r/∂θ_j of those that are not taken by numbers. `plain`: a workspace.
+/// ∂r/∂θ of `size` rows at x.
+template <class Rows>
+const Eigen::VectorXd& slope_of_rows(Neighbours& near, const Rows& rows, const Eigen::VectorXd& x,
+                                     Eigen::Index size) {
+  return near.slope(size, [&](Evaluation<double>& e, Eigen::VectorXd& out) {
+    rows(static_cast<EquationRows<double>&>(e), x.data(), out.data());
+  });
+}
+
+/// sum_j += weightsᵀ ∂r/∂θ_j of those that are not taken by numbers.
 template <class Rows>
 void add_by_parameters(const std::vector<OtherParameter>& others, const Rows& rows,
                        const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
-                       Eigen::VectorXd& plain, Eigen::VectorXd& sum) {
-  plain.resize(weights.size());
+                       Eigen::VectorXd& sum) {
   for (std::size_t j = 0; j < others.size(); ++j) {
-    const OtherParameter& other = others[j];
-    if (other.numbers.size() > 0) continue;
-    for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
-      rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain.data());
+    if (others[j].by_rows())
       sum[static_cast<Eigen::Index>(j)] +=
-          sixth_order::points[k].weight / other.h * weights.dot(plain);
-    }
+          weights.dot(slope_of_rows(*others[j].near, rows, x, weights.size()));
   }
 }
 
@@ -61,7 +67,7 @@ class RowDerivatives {
   /// Whether some parameter is taken by evaluations of other mechanisms.
   bool any_parameters() const {
     for (std::size_t j = 0; j < others_.size(); ++j)
-      if (!elsewhere_[j] && !others_[j].evaluations.empty()) return true;
+      if (!elsewhere_[j] && others_[j].by_mechanisms) return true;
     return false;
   }
 
@@ -91,18 +97,14 @@ class RowDerivatives {
     return d;
   }
 
-  /// ∂r/∂θ, size × directions. Cost: six plain evaluations for each parameter.
+  /// ∂r/∂θ, size × directions. Cost: six plain evaluations or more for each parameter.
   template <class Rows>
   Eigen::MatrixXd by_parameters(const Rows& rows, const Eigen::VectorXd& x, Eigen::Index size) {
     Eigen::MatrixXd d = Eigen::MatrixXd::Zero(size, directions());
-    plain_.resize(size);
     for (Eigen::Index j = 0; j < d.cols(); ++j) {
       const OtherParameter& other = others_[static_cast<std::size_t>(j)];
-      if (elsewhere_[static_cast<std::size_t>(j)]) continue;
-      for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
-        rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain_.data());
-        d.col(j) += sixth_order::points[k].weight / other.h * plain_;
-      }
+      if (!elsewhere_[static_cast<std::size_t>(j)] && other.by_mechanisms)
+        d.col(j) = slope_of_rows(*other.near, rows, x, size);
     }
     return d;
   }
@@ -120,7 +122,6 @@ class RowDerivatives {
   std::unique_ptr<Evaluation<Dual8>> dual_;
   std::vector<bool> elsewhere_;
   std::vector<Dual8> x_, out_;
-  Eigen::VectorXd plain_;
 };
 
 }  // namespace momenta

@@ -65,14 +65,13 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
   if (rows_.leak == 0 && rows_.beta == 0) swept_ = make_swept_tangent(mechanism);
   for (auto* x : {&by_q_, &by_u_, &along_q_, &along_p_, &still_, &rates_}) x->setZero(nv_);
   if (swept_ && m_ > 0) kinetic_ = make_kinetic_rates(mechanism);
-  any_rows_ = std::any_of(others.begin(), others.end(), [](const OtherParameter& other) {
-    return !other.evaluations.empty() && other.numbers.size() == 0;
-  });
+  any_rows_ = std::any_of(others.begin(), others.end(),
+                          [](const OtherParameter& other) { return other.by_rows(); });
   if (at_once() == 0) return;
   placed_ = std::any_of(others.begin(), others.end(),
                         [](const OtherParameter& other) { return other.of_places; });
   moves_drives_ = std::any_of(others.begin(), others.end(),
-                              [](const OtherParameter& other) { return !other.laws.empty(); });
+                              [](const OtherParameter& other) { return other.drives > 0; });
   numbers_ = make_number_slopes(mechanism, placed_);
   slopes_.setZero(numbers_->size());
 }
@@ -118,7 +117,7 @@ VectorXd StageAdjoint::along(const Rows& rows, const VectorXd& x, const VectorXd
 template <class Rows>
 void StageAdjoint::add_by_parameters(const Rows& rows, const VectorXd& x, const VectorXd& weights,
                                      VectorXd& sum) {
-  momenta::add_by_parameters(others_, rows, x, weights, plain_, sum);
+  momenta::add_by_parameters(others_, rows, x, weights, sum);
 }
 
 void StageAdjoint::add_by_rows(const AdjointState& at, const VectorXd& weights, bool of_gauge,

@@ -135,7 +135,7 @@ class StageAdjoint final : public FormAdjoint {
   bool driven_;
   bool any_rows_ = false;  ///< some θ is taken from the rows of other mechanisms
   std::vector<Dual8> x_, out_;
-  Eigen::VectorXd plain_, by_q_, by_u_, along_q_, along_p_, still_, rates_, u_;
+  Eigen::VectorXd by_q_, by_u_, along_q_, along_p_, still_, rates_, u_;
 };
 
 }  // namespace momenta

@@ -40,28 +40,27 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
     const RunVariable& v = variables[j];
     const OtherParameter& other = others[j];
     if (other.starts_at_once) continue;
-    VectorXd sixth = VectorXd::Zero(tangents.of_state.rows()), fourth = sixth;
     double size = 1;
-    for (std::size_t k = 0; k < sixth_order::points.size(); ++k) {
-      const Mechanism& made = other.mechanisms.empty() ? mechanism : *other.mechanisms[k];
-      VectorXd q = made.tree().q0, u = made.tree().u0;
-      const double change = sixth_order::points[k].k * other.h;
-      if (v.kind == RunVariable::Kind::position) q[v.place] += change;
-      if (v.kind == RunVariable::Kind::rate) u[v.place] += change;
-      const Start start = closed_start(made, q, u);
-      const std::vector<double> y = make_form(form, made, options, start)->initial(start);
-      const Eigen::Map<const VectorXd> state(y.data(), sixth.size());
-      sixth += sixth_order::points[k].weight / other.h * state;
-      if (k < sixth_order::fourth.size()) fourth += sixth_order::fourth[k] / other.h * state;
-      size = std::max(size, state.cwiseAbs().maxCoeff());
-    }
-    tangents.of_state.col(static_cast<Eigen::Index>(j)) = sixth;
-    // Of a smooth start they differ by h⁴; another assembly is about 1/h away.
-    const double apart = (sixth - fourth).cwiseAbs().maxCoeff();
-    if (!(apart <= 1e-3 * (size / v.size + sixth.cwiseAbs().maxCoeff())))
+    const double widest = other.by_mechanisms ? other.near->h() : other.h;
+    const sixth_order::Slope slope = sixth_order::slope_of(
+        widest, sixth_order::iterated, [&](std::size_t k, double h) -> VectorXd {
+          const Mechanism& made = other.by_mechanisms ? other.near->mechanism(k, h) : mechanism;
+          VectorXd q = made.tree().q0, u = made.tree().u0;
+          const double change = sixth_order::points[k].k * h;
+          if (v.kind == RunVariable::Kind::position) q[v.place] += change;
+          if (v.kind == RunVariable::Kind::rate) u[v.place] += change;
+          const Start start = closed_start(made, q, u);
+          const std::vector<double> y = make_form(form, made, options, start)->initial(start);
+          const Eigen::Map<const VectorXd> state(y.data(), tangents.of_state.rows());
+          size = std::max(size, state.cwiseAbs().maxCoeff());
+          return state;
+        });
+    tangents.of_state.col(static_cast<Eigen::Index>(j)) = slope.by;
+    // Of a smooth start both orders differ by h⁴; another assembly is about 1/h away.
+    if (!(slope.apart <= 1e-3 * (size / v.size + slope.by.cwiseAbs().maxCoeff())))
       tangents.broken.push_back("the start changes too abruptly with " +
                                 reading::in_quotes(v.name) + " for a derivative: within " +
-                                reading::digits(3 * other.h) +
+                                reading::digits(3 * widest) +
                                 " of its value the scene is assembled otherwise");
   }
   return tangents;

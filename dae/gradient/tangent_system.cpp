@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace momenta {
 
@@ -12,13 +13,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 TangentSystem::TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand,
-                             int directions)
+                             VectorXd sizes, bool tangents_count)
     : form_(form),
       tangents_(tangents),
       integrand_(integrand),
       n_(form.size()),
-      directions_(directions),
-      all_((n_ + extra()) * (1 + directions)),
+      directions_(static_cast<int>(sizes.size())),
+      all_((n_ + extra()) * (1 + directions_)),
+      sizes_(std::move(sizes)),
+      tangents_count_(tangents_count),
       before_(static_cast<std::size_t>(n_)) {}
 
 double TangentSystem::tolerance_factor() const {
@@ -26,7 +29,11 @@ double TangentSystem::tolerance_factor() const {
 }
 
 double TangentSystem::scale(int i) const {
-  return i < n_ ? form_.scale(i) : std::numeric_limits<double>::infinity();
+  if (i < n_) return form_.scale(i);
+  const int k = i - n_ - extra();
+  if (!tangents_count_ || k < 0 || k >= n_ * directions_)
+    return std::numeric_limits<double>::infinity();
+  return form_.scale(k % n_) / sizes_[k / n_];
 }
 
 std::vector<double> TangentSystem::initial(const std::vector<double>& y0,

@@ -7,7 +7,9 @@
 // by the method's own stages, so that Y is the derivative of the y that the method finds. Steps are
 // chosen by y alone, as in a run without tangents: the others have no part in the norm of the local
 // error, and the tolerance is that of n unknowns among all, tol √(n/N). Step sizes are held: their
-// own dependence on θ is as small as the local error.
+// own dependence on θ is as small as the local error. Where f has corners f_y jumps, and a step
+// over one leaves an error of first order in Y which y does not show: there Y counts in the norm
+// as y does, in its units over those of θ, so that steps end close to the corner.
 
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/functional.h>
@@ -18,7 +20,9 @@ namespace momenta {
 class TangentSystem final : public OdeSystem {
  public:
   /// `integrand` null: no J. All must outlive it.
-  TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand, int directions);
+  /// `sizes` of θ; `tangents_count`: in the norm of the error.
+  TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand, Eigen::VectorXd sizes,
+                bool tangents_count);
 
   int size() const override { return all_; }
   /// What rtol and atol are to be multiplied by.
@@ -69,6 +73,8 @@ class TangentSystem final : public OdeSystem {
   FormTangents& tangents_;
   Functional* integrand_;
   int n_, directions_, all_;
+  Eigen::VectorXd sizes_;
+  bool tangents_count_;
   bool corrected_stages_ = false;
   int looking_ = 0;  ///< depth
   SingularPassages passages_;

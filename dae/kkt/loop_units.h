@@ -2,14 +2,12 @@
 // Units in which it is counted what joints move and how far loops are open: lengths of the
 // scene, and radians. Scaled so, neither depends on the units of the scene.
 
+#include <momenta/dae/loop/left_by_files.h>
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
 
 namespace momenta {
-
-/// |Φ|∞ of redundant equations, in these units, that the rounding of a file may leave at the most.
-inline constexpr double left_by_files = 1e-8;
 
 struct LoopUnits {
   explicit LoopUnits(const Mechanism& mechanism);

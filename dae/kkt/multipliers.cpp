@@ -30,12 +30,7 @@ const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, cons
   if (tells_ && solver_.pivots().faded == 0) return unique_;
   // In accelerations, so that forces and moments compare: a row's λ times its W_ii.
   e_.place(t, q);
-  std::vector<double> scale = row_scales(mechanism_, e_);
-  // Rows on which nothing with inertia hangs have none, the axes of a slide on a slide: any
-  // positive one does, and it must be finite.
-  const double most = *std::max_element(scale.begin(), scale.end());
-  for (double& s : scale)
-    if (!(s > 0)) s = most > 0 ? most : 1;
+  const std::vector<double> scale = row_scales(mechanism_, e_);
   double largest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i)
     largest = std::max(largest, std::abs(lambda[i]) * scale[i]);

@@ -9,6 +9,7 @@ std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e
   e.constraint_entries(constraint.data());
   e.mass_diagonal(inertia.data());
   mechanism.axis_scale().of_groups(inertia, constraint, scale);
+  scale_idle_rows(scale);
   return scale;
 }
 

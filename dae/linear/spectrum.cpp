@@ -42,8 +42,8 @@ ScaledLoops scaled_loops(const Mechanism& mechanism, const Equilibrium& at) {
   e->constraint_entries(s.values.data());
   const std::vector<double> rows = row_scales(mechanism, *e);
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const double scale = rows[static_cast<std::size_t>(pattern[i].row)];
-    s.values[i] *= s.column[pattern[i].column] / (scale > 0 ? std::sqrt(scale) : 1);
+    s.values[i] *= s.column[pattern[i].column] /
+                   std::sqrt(rows[static_cast<std::size_t>(pattern[i].row)]);
   }
   return s;
 }

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/loop/left_by_files.h>
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/pair_of_loop.h>
@@ -8,9 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace momenta {
 namespace {
+
+constexpr double in_one_plane = 1e-9;
 
 Eigen::Matrix3d zero_rotation(const Tree& tree, const std::vector<Eigen::Isometry3d>& poses,
                               int body) {
@@ -215,8 +219,7 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
                          " m apart across the plane, expected at most its length, " +
                          reading::digits(l.given) + " m");
     } else {
-      const double size = 1 + point_a.norm() + point_b.norm();
-      if (std::abs(across) > 1e-9 * size)
+      if (std::abs(across) > in_one_plane * (1 + point_a.norm() + point_b.norm()))
         throw SceneError(
             scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its two sides lie " +
             reading::digits(std::abs(across)) +
@@ -285,6 +288,22 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
     }
     if (spec.kind == LoopKind::spherical && own.drives_coordinates())
       return "loop '" + spec.name + "' is of a kind that only space has";
+    // Sides a little apart across the plane close there in the least-squares sense, in space alone.
+    const auto height = [&](const std::string& body, const Eigen::Vector3d& origin) {
+      const int k = tree.body(body);
+      const Eigen::Vector3d p = tree.point(k, origin);
+      return normal.dot(k < 0 ? p : poses[static_cast<std::size_t>(k)] * p);
+    };
+    const double across =
+        std::abs(height(spec.child, spec.origin_child) - height(spec.parent, spec.origin_parent));
+    if (spec.kind != LoopKind::distance &&
+        across > in_one_plane * (1 + spec.origin_child.norm() + spec.origin_parent.norm()) &&
+        across <= left_by_files * length_of(scene)) {
+      char apart[32];
+      std::snprintf(apart, sizeof apart, "%.2g", across);
+      return "the sides of loop '" + spec.name + "' lie " + apart +
+             " m apart across the plane of the joints";
+    }
     const Eigen::Matrix3d in_b =
         zero_rotation(tree, poses, tree.body(spec.parent)) * spec.rotation.toRotationMatrix();
     const Eigen::Matrix3d in_a = zero_rotation(tree, poses, tree.body(spec.child));

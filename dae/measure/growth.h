@@ -18,6 +18,9 @@ struct Growth {
   double half_range = not_measured;  ///< half the spread of the slopes of sub-ranges
   double from = 0;                   ///< fitted range of t [s]
   double to = 0;                     ///< its end [s]
+
+  /// Whether the slopes of sub-ranges are near enough to each other for a power of t.
+  bool is_power() const { return !(half_range > 0.5); }
 };
 
 /// Fits running_max(t) ~ t^exponent over the last factor 20 in t, on logarithmically spaced times,

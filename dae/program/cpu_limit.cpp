@@ -30,6 +30,7 @@ void set_timer(double seconds) {
 }  // namespace
 
 CpuLimit::CpuLimit(double seconds) {
+  lift();
   if (!(seconds > 0)) return;
   std::snprintf(notice, sizeof notice,
                 "momenta: stopped after %g s of CPU time, with no result; expected it within "

@@ -1,12 +1,12 @@
 #pragma once
-// --cpu-limit of verbs that have no runs: after so much CPU time the program ends with a sentence,
-// and status 1, before anything is written.
+// --cpu-limit of what is no run: after so much CPU time the program ends with a sentence, and
+// status 1, before anything is written.
 
 namespace momenta::program {
 
 class CpuLimit {
  public:
-  /// [s]; 0: none. One at a time.
+  /// [s]; 0: none. The last one made is in force.
   explicit CpuLimit(double seconds);
   ~CpuLimit() { lift(); }
   CpuLimit(const CpuLimit&) = delete;

@@ -1,6 +1,7 @@
 #include <momenta/dae/assembly/replaced_rates.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
@@ -17,6 +18,7 @@
 #include <stdexcept>
 
 #include "answers.h"
+#include "cpu_limit.h"
 #include "kept_run.h"
 #include "loading.h"
 #include "progress_line.h"
@@ -26,6 +28,7 @@ namespace momenta::program {
 namespace {
 
 constexpr int most_drawn = 4000;  // samples that a page is made of
+constexpr double slack = 10;      // [s] beyond twice the limit: then also a step is cut short
 
 void print_singular_crossings(const RunResult& result) {
   constexpr std::size_t most = 12;
@@ -187,6 +190,8 @@ class RunFiles {
 }  // namespace
 
 int run(const Options& o) {
+  const double limit = o.cpu_limit.value_or(0);
+  const CpuLimit before(limit);
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
   const Assembly a = assemble(*mechanism);
@@ -200,7 +205,7 @@ int run(const Options& o) {
   request.reactions = o.reactions;
   request.multipliers = true;
   request.events = true;
-  request.max_cpu_seconds = o.cpu_limit.value_or(0);
+  request.max_cpu_seconds = limit;
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
   RunFiles files(o, *mechanism, s);
@@ -217,7 +222,11 @@ int run(const Options& o) {
   request.going_on = [&] { return !interrupted() && files.problem().empty(); };
   watch_signals();
   StudyResult study;
-  study.runs.push_back(run_form(*mechanism, a.start, request));
+  {
+    // A run looks at its time between steps, and one step of a large mechanism may take long.
+    const CpuLimit within_steps(limit > 0 ? 2 * limit + slack : 0);
+    study.runs.push_back(run_form(*mechanism, a.start, request));
+  }
   RunResult& result = study.runs.front();
   if (!files.flush()) result.status = "failed";
   if (!interrupted())
@@ -251,6 +260,8 @@ int run(const Options& o) {
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
+    if (const std::string first = reservations(study); !first.empty())
+      std::printf("%s\n\n", first.c_str());
     std::fputs(drift_table(study).c_str(), stdout);
     print_integrated(study);
     print_rank(*mechanism, a, result);

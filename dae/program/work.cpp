@@ -1,4 +1,5 @@
 #include <momenta/dae/report/advice.h>
+#include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/order_table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/measured_columns.h>
@@ -89,8 +90,10 @@ int work(const Options& o, const WorkOptions& w) {
   std::vector<ResultFile> files;
   const bool own = o.reference.empty() && reference;
   if (own && !o.out.empty()) files.push_back({o.out / "reference.csv", reference->csv()});
-  return publish(study, w.orders ? order_table(study) : advice(study), o, journal.get(),
-                 std::move(files));
+  const std::string first = reservations(study);
+  return publish(
+      study, (first.empty() ? "" : first + "\n") + (w.orders ? order_table(study) : advice(study)),
+      o, journal.get(), std::move(files));
 }
 
 }  // namespace momenta::program

@@ -109,6 +109,10 @@ void bind_runs(py::module_& module) {
   text(
       "reason", [](const RunResult& r) { return r.reason; }, "one sentence when not done");
   text(
+      "departure", [](const RunResult& r) { return r.departure; },
+      "one sentence where a run that reached its end is not to be relied on: how far the balance "
+      "of energy or the rates of loops are off; else empty");
+  text(
       "stopped_at", [](const RunResult& r) { return r.stopped_at; },
       "time at which it stopped [s]");
   text(

@@ -1,5 +1,6 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/run_label.h>
+#include <momenta/dae/study/branches.h>
 #include <momenta/dae/study/work_study.h>
 #include <momenta/dae/text/number_text.h>
 
@@ -24,6 +25,7 @@ std::string method(const RunResult& run, const std::string& label) {
 }  // namespace
 
 std::string advice(const StudyResult& study) {
+  if (branches_of(study.runs).differ) return "";
   const bool reference = !study.reference.empty();
   const auto labels = run_labels(study, false);
   if (std::none_of(study.runs.begin(), study.runs.end(),
@@ -36,7 +38,7 @@ std::string advice(const StudyResult& study) {
     std::vector<std::size_t> best;
     for (std::size_t i = 0; i < study.runs.size(); ++i) {
       const RunResult& run = study.runs[i];
-      if (run.status != "done" || !(judged_error(run, reference) <= target) ||
+      if (run.status != "done" || !reliable(run) || !(judged_error(run, reference) <= target) ||
           !std::isfinite(run.cpu_s))
         continue;
       const auto same = std::find_if(best.begin(), best.end(), [&](std::size_t j) {

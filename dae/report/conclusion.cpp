@@ -1,8 +1,10 @@
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/run_label.h>
+#include <momenta/dae/study/branches.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -32,12 +34,16 @@ std::string amount(const Named& n) {
   const bool both = !n.by_angles && !std::isnan(n.run->angle_drift_max);
   return amount(n, judged(n)) + (both ? " and " + compact(n.run->angle_drift_max, 2) + " rad" : "");
 }
+// Of a drift at this level there is nothing to compare.
+bool is_rounding(const Named& n) {
+  return judged(n) < (n.by_angles ? n.run->angle_rounding : n.run->drift_rounding);
+}
 void choose_drift(std::vector<Named>& runs) {
   const bool lengths = std::any_of(runs.begin(), runs.end(), [](const Named& n) {
-    return n.run->position_drift_max >= rounding_level;
+    return n.run->position_drift_max >= n.run->drift_rounding;
   });
   const bool angles = std::any_of(runs.begin(), runs.end(), [](const Named& n) {
-    return n.run->angle_drift_max >= rounding_level;
+    return n.run->angle_drift_max >= n.run->angle_rounding;
   });
   for (Named& n : runs) n.by_angles = !lengths && angles;
 }
@@ -70,8 +76,8 @@ bool largest_at_the_end(const Named& n) {
 
 std::string growth_clause(const Named& n) {
   const Growth& g = n.by_angles ? n.run->angle_growth : n.run->position_growth;
-  if (!(judged(n) >= rounding_level) || std::isnan(g.exponent)) return "";
-  if (g.half_range > power_law_half_range) {
+  if (is_rounding(n) || std::isnan(judged(n)) || std::isnan(g.exponent)) return "";
+  if (!g.is_power()) {
     return ", not as a power of t (slopes " + compact(g.exponent - g.half_range, 2) + " to " +
            compact(g.exponent + g.half_range, 2) + ")";
   }
@@ -82,7 +88,7 @@ std::string growth_clause(const Named& n) {
 }
 
 std::string drift_text(const Named& n) {
-  return judged(n) < rounding_level ? "rounding level (" + amount(n) + ")" : amount(n);
+  return is_rounding(n) ? "rounding level (" + amount(n) + ")" : amount(n);
 }
 
 // "After 1000 s the position drift of `a` is 0.27 m, growing like t^1.98"
@@ -90,7 +96,7 @@ std::string drift_clause(const Named& n) {
   const std::string start =
       "After " + seconds(n.run->status == "event" ? n.run->stopped_at : n.run->settings.end_time) +
       " the position drift of " + n.name;
-  if (judged(n) < rounding_level) return start + " is at " + drift_text(n);
+  if (is_rounding(n)) return start + " is at " + drift_text(n);
   return start + (largest_at_the_end(n) ? " is " : " reached ") + amount(n) + growth_clause(n);
 }
 
@@ -100,7 +106,7 @@ std::string tail(const Named& n, bool growth_was_said) {
   const std::string said = ", growing like ";
   if (growth_was_said && growth.rfind(said, 0) == 0)
     growth = ", like " + growth.substr(said.size());
-  return n.name + ' ' + (judged(n) < rounding_level ? "stays at " : "") + drift_text(n) + growth;
+  return n.name + ' ' + (is_rounding(n) ? "stays at " : "") + drift_text(n) + growth;
 }
 
 // Two decimals near one, two digits away from it.
@@ -156,7 +162,7 @@ std::string pair_sentence(const Pair& pair) {
                                              std::string::npos);
   if (!gauged(m.settings)) text += " (no gauge)";
   const double drift_a = judged(pair.acceleration), drift_m = judged(pair.momentum);
-  if (std::max(drift_a, drift_m) >= rounding_level && drift_m > drift_a) {
+  if (!is_rounding(pair.momentum) && drift_m > 1.1 * drift_a) {
     text += drift_a > 0 ? ", which is worse, " + ratio_text(drift_m / drift_a) + " times as much"
                         : ", which is worse";
   }
@@ -179,7 +185,7 @@ std::string first_sentence(const std::vector<Named>& done) {
   const Named best = *std::min_element(drifting.begin(), drifting.end(), less);
   const Named worst = *std::max_element(drifting.begin(), drifting.end(), less);
   if (drifting.size() == 1) return drift_clause(best) + ".";
-  if (judged(worst) < rounding_level) {
+  if (is_rounding(worst)) {
     return "After " + seconds(worst.run->settings.end_time) + " the position drift of all " +
            std::to_string(drifting.size()) + " finished runs is at rounding level (" +
            amount(worst, judged(worst)) + " at most).";
@@ -268,28 +274,56 @@ std::string failed_sentence(const std::vector<Named>& failed, std::size_t total)
   return text + ".";
 }
 
-std::vector<Named> runs_where(const StudyResult& study, bool done) {
+template <class Takes>
+std::vector<Named> runs_where(const StudyResult& study, Takes takes) {
   const auto labels = run_labels(study);
   std::vector<Named> runs;
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
-    if (finished(study.runs[i]) == done) runs.push_back({&study.runs[i], '`' + labels[i] + '`'});
+    if (takes(study.runs[i])) runs.push_back({&study.runs[i], '`' + labels[i] + '`'});
   }
   return runs;
 }
 
+std::string as_sentence(std::string clause) {
+  clause.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(clause.front())));
+  return clause + ".";
+}
+
 }  // namespace
+
+std::string reservations(const StudyResult& study) {
+  const auto off =
+      runs_where(study, [](const RunResult& r) { return finished(r) && !reliable(r); });
+  std::string text;
+  if (study.runs.size() == 1 && !off.empty()) {
+    text = as_sentence(off.front().run->departure);
+  } else if (!off.empty()) {
+    constexpr std::size_t named = 3;
+    text = std::to_string(off.size()) + " of " + std::to_string(study.runs.size()) +
+           " runs are done and not to be relied on, and are not compared: ";
+    for (std::size_t i = 0; i < std::min(named, off.size()); ++i)
+      text += (i > 0 ? "; " : "") + off[i].name + ", " + off[i].run->departure;
+    if (off.size() > named) text += "; and " + std::to_string(off.size() - named) + " more";
+    text += ".";
+  }
+  if (const Branches branches = branches_of(study.runs); branches.differ)
+    text += (text.empty() ? "" : " ") + as_sentence(in_words(branches));
+  return text;
+}
 
 std::string answer(const StudyResult& study) {
   if (study.runs.empty()) return "No run was made.";
-  auto done = runs_where(study, true);
-  if (done.empty()) return "";
+  auto done = runs_where(study, reliable);
+  std::string text = reservations(study);
+  if (done.empty() || branches_of(study.runs).differ) return text;
   choose_drift(done);
-  const std::string best = best_sentence(done);
-  return first_sentence(done) + (best.empty() ? "" : ' ' + best);
+  for (const std::string& sentence : {first_sentence(done), best_sentence(done)})
+    if (!sentence.empty()) text += (text.empty() ? "" : " ") + sentence;
+  return text;
 }
 
 std::string failures(const StudyResult& study) {
-  const auto failed = runs_where(study, false);
+  const auto failed = runs_where(study, [](const RunResult& r) { return !finished(r); });
   return failed.empty() ? "" : failed_sentence(failed, study.runs.size());
 }
 

@@ -7,17 +7,18 @@
 
 namespace momenta {
 
-/// Runs whose slopes of sub-ranges spread wider than this have not grown as a power of t.
-inline constexpr double power_law_half_range = 0.3;
-
-/// First sentence: drift and its growth, of `acceleration` against `momentum` with its gauge (same
-/// integrator) where both finished, else of the best and the worst run. Second: the best run by
-/// error against the reference, or by drift and energy where there is none, and its time. Third,
+/// First what is not to be relied on, reservations(), where there is any. Then drift and its growth, of `acceleration` against `momentum` with its gauge (same
+/// integrator) where both finished, else of the best and the worst run. Then the best run by
+/// error against the reference, or by drift and energy where there is none, and its time. Last,
 /// where runs failed: which, when, why. Forms stand in backquotes, growth as t^1.98; plain text
 /// otherwise.
 std::string conclusion(const StudyResult&);
 
-/// Its first two sentences, what came out: empty when no run finished.
+/// Runs that are done with the balance of energy or the rates of loops off, which are not compared
+/// with others, and a motion that is ambiguous; empty: neither.
+std::string reservations(const StudyResult&);
+
+/// All but the last sentence, what came out: empty when no run finished.
 std::string answer(const StudyResult&);
 
 /// Its last sentence: empty when every run finished.

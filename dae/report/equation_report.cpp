@@ -171,7 +171,8 @@ std::string equation_run_table(const EquationFile& file, const EquationStart& st
       ": " + std::to_string(run.counters.steps) + " steps, " +
       std::to_string(run.counters.rejected) + " rejected, " +
       std::to_string(run.counters.evaluations) + " evaluations, " +
-      std::to_string(run.counters.factorizations) + " factorisations\n";
+      std::to_string(run.counters.factorizations) + " factorisations" +
+      (run.switchings > 0 ? ", " + std::to_string(run.switchings) + " switchings" : "") + "\n";
   if (const std::string moved = moved_in_words(file, start); !moved.empty())
     text += "The start was moved onto the constraints: " + moved + "\n";
   text += "\n";
@@ -197,6 +198,7 @@ Json equation_run_json(const EquationRun& run, const Digits& digits) {
           {"reason", run.reason},
           {"stopped_at", number_or_null(run.stopped_at)},
           {"linear_solver", run.linear_solver},
+          {"switchings", run.switchings},
           {"counters",
            {{"steps", run.counters.steps},
             {"rejected", run.counters.rejected},

@@ -4,12 +4,16 @@
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/text/number_text.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Differences that agree to so many digits are told by no sentence.
+constexpr double enough_digits = 8;
 
 /// θ dJ/dθ over J: by how many times the relative change of θ J changes.
 double relative(const GradientResult& r, Eigen::Index j) {
@@ -33,6 +37,18 @@ std::string gradient_in_words(const GradientResult& r) {
       ", " + std::to_string(r.steps) + (r.steps == 1 ? " step." : " steps.");
   if (!r.without_effect.empty())
     text += " Without effect: " + reading::all_in_quotes(r.without_effect) + ".";
+  std::vector<std::string> differenced;
+  double digits = enough_digits;
+  for (std::size_t j = 0; j < r.digits.size(); ++j)
+    if (r.digits[j] < enough_digits) {
+      differenced.push_back(r.variables[j].name);
+      digits = std::min(digits, r.digits[j]);
+    }
+  if (!differenced.empty())
+    text += "\nBy " + reading::all_in_quotes(differenced) +
+            " the equations are differentiated by differences of neighbouring scenes, whose fourth "
+            "and sixth order agree to " +
+            std::to_string(static_cast<int>(digits)) + " digits.";
   for (const std::string& remark : r.remarks) text += "\nRemark: " + remark + ".";
   return text;
 }
@@ -72,7 +88,10 @@ Json gradient_json(const GradientResult& r) {
     by[v.name] = {{"kind", kind},
                   {"value", number_or_null(v.value)},
                   {"derivative", number_or_null(r.gradient[j])},
-                  {"relative", number_or_null(relative(r, j))}};
+                  {"relative", number_or_null(relative(r, j))},
+                  {"digits", j < static_cast<Eigen::Index>(r.digits.size())
+                                 ? Json(std::floor(r.digits[static_cast<std::size_t>(j)]))
+                                 : Json()}};
   }
   const RunSettings& s = r.settings;
   return {{"scene", r.scene},

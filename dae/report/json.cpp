@@ -23,6 +23,14 @@ Json environment_json(const Environment& environment) {
           {"versions", versions}};
 }
 
+namespace {
+
+Json exponent(const Growth& growth) {
+  return growth.is_power() ? number_or_null(growth.exponent) : Json(nullptr);
+}
+
+}  // namespace
+
 Json summary_json(const RunResult& run, const Environment& environment) {
   const RunSettings& s = run.settings;
   const Counters& c = run.counters;
@@ -38,6 +46,7 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["end_time"] = number_or_null(s.end_time);
   json["status"] = run.status;
   json["reason"] = run.reason;
+  json["departure"] = run.departure;
   json["stopped_at"] = number_or_null(run.stopped_at);
   json["stiff_from"] = number_or_null(run.stiff_from);
   json["changed_to"] = changed(run) ? Json(s.when_stiff) : Json(nullptr);
@@ -66,14 +75,15 @@ Json summary_json(const RunResult& run, const Environment& environment) {
                    {"velocity_max", number_or_null(run.velocity_drift_max)},
                    {"between_steps_max", number_or_null(run.between_steps_max)},
                    {"unit", run.drift_unit.empty() ? Json(nullptr) : Json(run.drift_unit)},
-                   {"position_exponent", number_or_null(run.position_growth.exponent)},
-                   {"velocity_exponent", number_or_null(run.velocity_growth.exponent)},
+                   {"position_exponent", exponent(run.position_growth)},
+                   {"velocity_exponent", exponent(run.velocity_growth)},
                    {"angle_max", number_or_null(run.angle_drift_max)},
                    {"angle_rate_max", number_or_null(run.angle_rate_drift_max)},
                    {"angle_between_steps_max", number_or_null(run.angle_between_steps_max)},
-                   {"angle_exponent", number_or_null(run.angle_growth.exponent)},
-                   {"angle_rate_exponent", number_or_null(run.angle_rate_growth.exponent)}};
-  json["energy"] = {{"error_max", number_or_null(run.energy_error_max)}};
+                   {"angle_exponent", exponent(run.angle_growth)},
+                   {"angle_rate_exponent", exponent(run.angle_rate_growth)}};
+  json["energy"] = {{"error_max", number_or_null(run.energy_error_max)},
+                    {"turned_over", number_or_null(run.energy_turned_over)}};
   json["error"] = {{"position_max", number_or_null(run.position_error_max)},
                    {"velocity_max", number_or_null(run.velocity_error_max)},
                    {"force_max", number_or_null(run.force_error_max)},

@@ -123,7 +123,8 @@ std::string page(const StudyResult& study, const std::string& kind, const std::s
 
 std::string drift_page(const StudyResult& study) {
   return page(study, study.drift_study ? "Drift of the loops" : "Error against time",
-              study.drift_study ? marked_up(answer(study)) : paragraphs(advice(study)),
+              study.drift_study ? marked_up(answer(study))
+                                : paragraphs(reservations(study) + "\n" + advice(study)),
               failures(study), page_data(study),
               script({embedded::table_js(), embedded::history_js(), embedded::scatter_js(),
                       embedded::study_page_js()}));

@@ -6,6 +6,7 @@
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/thinning.h>
+#include <momenta/dae/study/branches.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <algorithm>
@@ -52,6 +53,7 @@ Json series_json(const RunResult& run) {
 Json growth_json(const Growth& g) {
   return {{"exponent", number_or_null(g.exponent)},
           {"half_range", number_or_null(g.half_range)},
+          {"power", g.is_power()},
           {"from", number_or_null(g.from)},
           {"to", number_or_null(g.to)}};
 }
@@ -118,6 +120,7 @@ Json page_data(const StudyResult& study) {
           {"command", study.command},
           {"reference", study.reference},
           {"drift_study", study.drift_study},
+          {"ambiguous", branches_of(study.runs).differ},
           {"plan", pairs_json(study.plan)},
           {"environment", environment_json(study.environment)},
           {"palette", palette},

@@ -146,6 +146,11 @@ std::string sweep_table(const SweepRequest& request, const std::vector<SweepCase
     text += "\n";
   }
   if (statistics) text += sample_table(request, *statistics);
+  const auto off = [](const SweepCase& c) { return c.status == "done" && !c.reason.empty(); };
+  if (const auto first = std::find_if(cases.begin(), cases.end(), off); first != cases.end())
+    text += std::to_string(std::count_if(cases.begin(), cases.end(), off)) +
+            " cases are done and not to be relied on, first " + values_in_words(request, *first) +
+            ": " + first->reason + ".\n";
   text += std::to_string(cases.size()) + " cases";
   for (const auto& [status, count] : counts(cases))
     text += ", " + std::to_string(count) + " " + status;

@@ -17,9 +17,10 @@ constexpr std::ptrdiff_t after_drifts = 7;
 
 std::string growth(const Growth& g) {
   if (std::isnan(g.exponent)) return "-";
-  if (std::isnan(g.half_range)) return fixed(g.exponent, 2);
-  const std::string range = fixed(g.half_range, 2);
-  return fixed(g.exponent, 2) + "±" + (range.front() == '0' ? range.substr(1) : range);
+  if (!g.is_power()) return "no power";
+  const double exponent = std::abs(g.exponent) < 0.005 ? 0 : g.exponent;  // no −0.00
+  if (std::isnan(g.half_range)) return fixed(exponent, 2);
+  return fixed(exponent, 2) + "±" + fixed(g.half_range, 2).substr(1);  // below 0.5
 }
 
 std::string count(long n) {
@@ -67,7 +68,7 @@ std::string drift_table(const StudyResult& study) {
   }
   for (const RunResult& run : study.runs) rows.push_back(row_of(run, both));
 
-  const std::size_t error = rows.front().size() - 4;
+  const std::size_t error = rows.front().size() - 4;  // before steps, evaluations and CPU time
   if (std::all_of(rows.begin() + 3, rows.end(), [&](const Row& row) { return row[error] == "-"; }))
     for (Row& row : rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(error));
   const std::size_t columns = rows.front().size();
@@ -97,6 +98,8 @@ std::string drift_table(const StudyResult& study) {
       });
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunResult& run = runs[i];
+    if (finished(run) && !reliable(run))
+      text += labels[i] + " is not to be relied on: " + run.departure + '\n';
     if (finished(run) || (as_one && i > 0)) continue;
     text += (as_one ? "all " + std::to_string(runs.size()) + " runs" : labels[i]) + " stopped at " +
             compact(run.stopped_at, 4) + " s: " + (run.reason.empty() ? run.status : run.reason) +

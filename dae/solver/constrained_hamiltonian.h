@@ -4,6 +4,7 @@
 // σ in it.
 
 #include <memory>
+#include <string>
 
 namespace momenta {
 
@@ -27,6 +28,9 @@ class HamiltonianPlace {
   virtual void constraint_forces(const double* x, double* result) = 0;
   /// M u + prescribed part (nv).
   virtual void momentum(const double* u, double* p) = 0;
+  /// M x (nv), and x ← M⁻¹x.
+  virtual void mass_times(const double* x, double* p) = 0;
+  virtual void solve_mass(double* x) = 0;
   /// T + V [J] at rates u (nv), and T there.
   virtual double energy(const double* q, const double* u) = 0;
   virtual double kinetic() = 0;
@@ -49,6 +53,8 @@ class ConstrainedHamiltonian {
   /// Whether anything is prescribed: drives, constraints that take the time.
   virtual bool prescribed() const = 0;
   virtual std::unique_ptr<HamiltonianPlace> place() const = 0;
+  /// Why M has no inverse at (t, q), in words; empty: it has one.
+  virtual std::string without_inverse(double t, const double* q) = 0;
   /// q' (nq) at rates u, and q ∘ exp δ, see SecondOrder.
   virtual void coordinate_rates(const double* q, const double* u, double* qdot) = 0;
   virtual void move(const double* q, const double* delta, double* moved) = 0;

@@ -223,7 +223,13 @@ IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<doub
   if (!method.start()) {
     result.y = y0;
     result.end_time = t0;
-    result.reason = stop_sentence(name, t0, "the start has no rates: a joint has no inertia");
+    const std::string singular = parts->without_inverse(t0, y0.data());
+    result.reason = stop_sentence(
+        name, t0,
+        singular.empty() ? "the start has no rates"
+                         : "the method takes rates from M u = p, and " + singular +
+                               "; expected a method that solves for them with the multipliers, "
+                               "as gauss");
     return result;
   }
   MultistepRun<Steps<Step>>(method, system.size(), t0, output_times, options, observer).run(result);

@@ -124,7 +124,8 @@ class EnergyMomentum {
     middle_->force(q_.data(), u_.data(), sigma_.data(), g_.data());
     work_ = h * middle_->power(q_.data(), u_.data());
     change_of_p_ = to.p - from.p;
-    middle_->rates(change_of_p_.data(), nullptr, lift_.data());
+    lift_ = change_of_p_;
+    middle_->solve_mass(lift_.data());
 
     half_ = delta_;
     delta_ = h * (u_ + alpha_ * lift_);
@@ -153,13 +154,13 @@ class EnergyMomentum {
   }
   /// M v of δ, in the middle.
   void weigh() {
-    middle_->momentum(delta_.data(), push_.data());
+    middle_->mass_times(delta_.data(), push_.data());
     if (cyclic_.empty()) return;
     const auto count = static_cast<Eigen::Index>(cyclic_.size());
     for (Eigen::Index k = 0; k < count; ++k) {
       unused_.setZero();
       unused_[at(k)] = 1;
-      middle_->momentum(unused_.data(), columns_.col(k).data());
+      middle_->mass_times(unused_.data(), columns_.col(k).data());
     }
     for (Eigen::Index k = 0; k < count; ++k) {
       among_.row(k) = columns_.row(at(k));

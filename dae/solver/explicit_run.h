@@ -88,11 +88,13 @@ class ExplicitRun {
   }
 
   bool steps() {
+    Pace pace(result_.counters.steps + result_.counters.rejected, t_, end_, options_.max_steps);
     while (true) {
       if (carry_ && system_.can_be_put_down()) observer_.before_step(t_, carry_);
       const long attempts = result_.counters.steps + result_.counters.rejected;
       if (attempts >= options_.max_steps)
         return stop("the limit of " + std::to_string(options_.max_steps) + " steps is reached");
+      if (pace.is_hopeless(attempts, t_)) return stop(pace.in_words());
       if (cpu_.exceeded()) {
         result_.reason = time_limit_sentence(Tableau::name, cpu_.seconds(), t_);
         return false;
@@ -121,10 +123,9 @@ class ExplicitRun {
       if (t_ >= end_) return true;
       system_.begin_step(t_, step_.y());
       if (!kept && !step_.begin(t_)) return stop(evaluation_cause(system_.failure()));
-      if (!looks) continue;
-      stiffness_.take((t1 - began) * (altered ? uncorrected : step_.rate_of_change()), began);
-      if (options_.until_stiff && trials_.handling() == SingularityHandling::none &&
-          !std::isnan(stiffness_.from())) {
+      if (looks)
+        stiffness_.take((t1 - began) * (altered ? uncorrected : step_.rate_of_change()), began);
+      if (options_.until_stiff && !std::isnan(stiffness_.from()) && may_be_left()) {
         result_.ended_stiff = true;
         return stop("the problem is stiff");
       }
@@ -137,6 +138,13 @@ class ExplicitRun {
   bool keeps_end() const {
     if (Tableau::end_derivative_always) return true;
     return !corrected_ && trials_.handling() == SingularityHandling::none;
+  }
+
+  /// Whether another method, which has no singularity handling, may go on with a stiff problem.
+  /// Next to a singular pose this one does; but one that is passed is passed in fewer steps.
+  bool may_be_left() {
+    constexpr int most_waited = 1000;
+    return trials_.handling() != SingularityHandling::position || ++waited_ > most_waited;
   }
 
   /// Steps of their own from this one's start to t, each within the tolerance; uncounted, and not
@@ -250,6 +258,7 @@ class ExplicitRun {
   double t_, end_;  ///< the current step's start, the end [s]
   std::vector<double> sample_, unaltered_, end_rate_;
   Stiffness stiffness_{stability_interval<Tableau>()};
+  int waited_ = 0;                  ///< stiff steps next to singular poses
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start
   IntegrationResult result_;

@@ -40,6 +40,7 @@ class ExplicitStep {
         lost_(stride_),
         lost_new_(stride_),
         argument_(stride_),
+        error_(stride_),
         k_(stored * stride_),
         dense_(n_),
         last_argument_(n_),
@@ -99,8 +100,8 @@ class ExplicitStep {
     return have_end_;
   }
 
-  /// Keeps the last stage and its argument, both at t1, for rate_of_change(). Right after
-  /// attempt(), whose last argument is still there.
+  /// Keeps the last stage and its argument, both at t1, for rate_of_change(). After attempt() and
+  /// estimates of its error, before anything else is evaluated: its last argument is still there.
   void keep_last_stage() {
     std::copy_n(argument_.data(), n_, last_argument_.data());
     std::copy_n(stage(s - 1), n_, last_stage_.data());
@@ -150,8 +151,8 @@ class ExplicitStep {
   double motion_error_squared() {
     const auto measured = [&]<std::size_t row>() {
       for (std::size_t i = 0; i < stride_; i += width)
-        store(argument_.data() + i, stage_sum<Tableau::e, row>(k_.data() + i, stride_));
-      return system_.motion_error_squared(t1_, y_new_.data(), argument_.data(), rtol_, relative_);
+        store(error_.data() + i, stage_sum<Tableau::e, row>(k_.data() + i, stride_));
+      return system_.motion_error_squared(t1_, y_new_.data(), error_.data(), rtol_, relative_);
     };
     const double high = measured.template operator()<0>();
     if constexpr (Tableau::estimates == 1) return h_ * h_ * high;
@@ -250,8 +251,8 @@ class ExplicitStep {
   OdeSystem& system_;
   std::size_t n_, stride_;  ///< unknowns; rounded up to whole cache lines, the padding always zero
   double rtol_;
-  AlignedArray atol_, y_, y_new_, lost_, lost_new_, argument_;  ///< stride_ each
-  AlignedArray k_;                                              ///< stages, stored × stride_
+  AlignedArray atol_, y_, y_new_, lost_, lost_new_, argument_, error_;  ///< stride_ each
+  AlignedArray k_;  ///< stages, stored × stride_
   DenseOutput<Tableau> dense_;
   std::vector<double> last_argument_, last_stage_;  ///< n_, where they were kept
   double relative_;                                 ///< atol of an unknown of scale 1

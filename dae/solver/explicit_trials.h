@@ -59,12 +59,13 @@ class Trials {
                             [this](double at, const double* y, double* ydot) {
                               return step_.evaluate(at, y, ydot);
                             });
+      first_ = h_;
     }
   }
 
   void carry_control(Memory& memory) { control_.carry(memory); }
   void carry(Memory& memory) {
-    memory(h_), memory(handling_), memory(first_handled_), memory(lengthened_);
+    memory(h_), memory(first_), memory(handling_), memory(first_handled_), memory(lengthened_);
     memory(again_evaluations_);
   }
   /// Whatever handling the system had, it now has that of these.
@@ -182,9 +183,10 @@ class Trials {
     const double span = end_ - t0_;
     return options_.max_step > 0 ? std::min(options_.max_step, span) : span;
   }
-  /// Below this a stage's time differs from t in its last digits only; near t = 0 the span counts.
+  /// Below this a stage's time differs from t in its last digits only. Near t = 0 the span counts,
+  /// and of one that is long beside the motion the first step, which is of the motion's own length.
   double shortest_step(double t) const {
-    return 16 * epsilon * std::max(std::abs(t), 1e-6 * (end_ - t0_));
+    return 16 * epsilon * std::max(std::abs(t), std::min(1e-6 * (end_ - t0_), first_));
   }
 
   OdeSystem& system_;
@@ -196,6 +198,7 @@ class Trials {
   std::size_t n_;
   double t0_, end_;  ///< of the run [s]
   double h_ = 0;     ///< step tried next [s]
+  double first_ = std::numeric_limits<double>::infinity();  ///< the first that was tried [s]
   bool fixed_;
   SingularityHandling handling_ = SingularityHandling::none;
   double first_handled_ = 0;  ///< the step with which singularity handling began [s]

@@ -7,12 +7,14 @@
 //   ever;
 // - where scale is infinite they take no part in the Newton norm either: at the first, tiny steps
 //   their noise is of the order of ε/h, and no tolerance fits;
+// - of systems that say so, errors are filtered before they are tested (filtered_error.h);
 // - y and y' at the start satisfy all constraints, also hidden ones: IDA's own correction of
 //   initial values treats index 1 only.
 // Source: Hindmarsh et al., SUNDIALS, ACM TOMS 31 (2005) 363-396; Brenan, Campbell, Petzold,
 // Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
 
 #include <momenta/core/scalar/all_finite.h>
+#include <momenta/dae/solver/filtered_error.h>
 #include <momenta/dae/solver/ida_matrix.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/ode_restart.h>
@@ -25,6 +27,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace momenta {
@@ -46,6 +49,12 @@ constexpr int first_step_retries = 2;
 constexpr int max_error_test_failures = 15;
 constexpr int max_convergence_failures = 15;
 constexpr int highest_order = 5;
+
+/// Steps of order 1 in a row that are accepted only after a rejection, and steps of one length
+/// after them. Where Φ = 0 gives σ, the difference formula of order 1 errs in u by h/2 times what
+/// Φ_q turns by, σ answers, and a step twice as long, by another σ, is off in p; while no two steps
+/// are equally long IDA does not raise the order.
+constexpr int most_stuck = 10, held_steps = 8;
 
 using sundials::check;
 
@@ -72,6 +81,11 @@ class Ida {
       differential_[i] = system.differential(i) ? 1 : 0;
     }
   }
+  ~Ida() {
+    if (testing == this) testing = nullptr;
+  }
+  Ida(const Ida&) = delete;
+  Ida& operator=(const Ida&) = delete;
 
   static const char* name() { return "ida"; }
   /// Of a system that has started.
@@ -85,6 +99,12 @@ class Ida {
     begin_y_.assign(y_.data(), y_.data() + y_.size());
     begin_ydot_.assign(ydot_.data(), ydot_.data() + ydot_.size());
     matrix_ = std::make_unique<IdaMatrix>(system_, context_, y_);
+    const auto* of_index = dynamic_cast<OfIndexTwo*>(&system_);
+    if (of_index != nullptr && of_index->is_of_index_two()) {
+      filtered_.emplace(system_);
+      // IDA asks for this norm for error tests alone; the vectors it makes are copies of y.
+      static_cast<N_Vector>(y_)->ops->nvwrmsnormmask = error_norm;
+    }
     return all_finite(y_.data(), y_.size()) && all_finite(ydot_.data(), ydot_.size());
   }
 
@@ -115,6 +135,7 @@ class Ida {
 
   bool step(double& t, double end, std::string& cause) {
     const double t0 = t;
+    testing = this;
     evaluation_failed_ = not_finite_ = false;
     floor_.forget();
     int flag = IDASolve(memory_.get(), end, &t, y_, ydot_, IDA_ONE_STEP);
@@ -137,6 +158,7 @@ class Ida {
                 (floor > newton_fraction ? "; " + of_rounding(floor) : inner);
         return false;
       }
+      leave_order_one();
       return true;
     }
     cause = explain(flag);
@@ -189,7 +211,16 @@ class Ida {
         ida.matrix_->fill(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c, matrix);
     ida.evaluation_failed_ |= filled == IdaMatrix::Filled::not_evaluated;
     ida.not_finite_ |= filled == IdaMatrix::Filled::not_finite;
+    if (ida.filtered_ && filled == IdaMatrix::Filled::yes &&
+        !ida.filtered_->at(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c))
+      return 1;
     return filled == IdaMatrix::Filled::yes ? 0 : 1;
+  }
+
+  static double error_norm(N_Vector e, N_Vector weights, N_Vector) {
+    double h = 0;
+    check(IDAGetCurrentStep(testing->memory_.get(), &h), "IDAGetCurrentStep");
+    return testing->filtered_->norm(N_VGetArrayPointer(e), N_VGetArrayPointer(weights), h);
   }
 
   bool first_step_failed(int flag) {
@@ -227,6 +258,28 @@ class Ida {
     c.jacobians += jacobians;
     c.factorizations += setups;
     c.newton_iterations += iterations;
+  }
+
+  /// After an accepted step.
+  void leave_order_one() {
+    void* ida = memory_.get();
+    long failures = 0;
+    int order = 0;
+    check(IDAGetNumErrTestFails(ida, &failures), "IDAGetNumErrTestFails");
+    check(IDAGetLastOrder(ida, &order), "IDAGetLastOrder");
+    stuck_ = order == 1 && failures > failures_ ? stuck_ + 1 : 0;
+    failures_ = failures;
+    double longest = options_.max_step;  // 0: none
+    if (stuck_ == most_stuck) {
+      check(IDAGetLastStep(ida, &longest), "IDAGetLastStep");
+      held_ = held_steps;
+      stuck_ = 0;
+    } else if (held_ == 0 || (--held_ > 0 && order == 1)) {
+      return;
+    } else {
+      held_ = 0;
+    }
+    check(IDASetMaxStep(ida, longest), "IDASetMaxStep");
   }
 
   /// What went wrong in a trial of the present step, if anything did.
@@ -270,6 +323,9 @@ class Ida {
     }
   }
 
+  /// Whose step is under way: a norm knows nothing but its vectors.
+  static thread_local Ida* testing;
+
   DaeSystem& system_;
   const IntegrationOptions& options_;
   double span_, t0_ = 0, t_end_ = 0;
@@ -279,10 +335,15 @@ class Ida {
   sundials::Vector y_, ydot_, output_, tolerance_, differential_;
   std::unique_ptr<IdaMatrix> matrix_;
   RoundingFloor floor_;
+  std::optional<FilteredError> filtered_;
   sundials::Integrator memory_;
   Counters earlier_attempts_;
+  long failures_ = 0;         ///< of error tests so far
+  int stuck_ = 0, held_ = 0;  ///< steps at order 1 after a rejection each; of one length, to come
   bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step
 };
+
+thread_local Ida* Ida::testing = nullptr;
 
 }  // namespace
 

@@ -30,7 +30,7 @@ class MultistepRun {
         options_(options),
         observer_(observer),
         outputs_(t0, output_times),
-        cpu_(options.max_cpu_seconds),
+        cpu_(options.max_cpu_seconds, options.spent_cpu_seconds),
         t_(t0),
         y_(static_cast<std::size_t>(size)),
         ydot_(static_cast<std::size_t>(size)) {}
@@ -54,10 +54,12 @@ class MultistepRun {
       observer_.exact([this](double t, double* y) {
         if (!dense_output(t, y, ydot_.data())) interpolation_failed_ = true;
       });
+    Pace pace(0, t_, end(), options_.max_steps);
     for (long count = 0; t_ < end(); ++count) {
       if (count >= options_.max_steps)
         return stop(result,
                     "the limit of " + std::to_string(options_.max_steps) + " steps is reached");
+      if (pace.is_hopeless(count, t_)) return stop(result, pace.in_words());
       if (cpu_.exceeded()) {
         result.reason = time_limit_sentence(method_.name(), cpu_.seconds(), t_);
         return false;

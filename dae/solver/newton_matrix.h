@@ -39,6 +39,22 @@ inline std::size_t entry_count(int size, const JacobianPattern& pattern) {
   return pattern.column_start.empty() ? n * n : pattern.row.size();
 }
 
+/// y += factor A x for the stored values of a matrix of this pattern.
+inline void add_product(const JacobianPattern& pattern, const std::vector<double>& values,
+                        double factor, const double* x, std::vector<double>& y) {
+  const std::size_t n = y.size();
+  for (std::size_t column = 0; column < n; ++column) {
+    const double value = factor * x[column];
+    if (pattern.column_start.empty()) {
+      for (std::size_t row = 0; row < n; ++row) y[row] += values[column * n + row] * value;
+      continue;
+    }
+    const auto end = static_cast<std::size_t>(pattern.column_start[column + 1]);
+    for (auto k = static_cast<std::size_t>(pattern.column_start[column]); k < end; ++k)
+      y[static_cast<std::size_t>(pattern.row[k])] += values[k] * value;
+  }
+}
+
 /// As results name it.
 inline const char* linear_solver_name(const JacobianPattern& pattern) {
   return pattern.column_start.empty() ? "dense LU" : "KLU";

@@ -5,7 +5,8 @@
 // else radau5_control.h. Gauge reset: radau5_gauge.h. Newton's corrections that shrink no more are
 // rounding where they leave the motion as it is. Dense output: the collocation cubic between steps;
 // a sample is a step of its own from the last step's start (radau5_look.h); where its iteration
-// does not converge, the cubic. Looking on counts nothing and changes nothing.
+// does not converge, and early in the step for variables of higher index, the cubic. Looking on
+// counts nothing and changes nothing.
 //
 // Order on y, on variables of index 2, of index 3: 5, 3 in index-2 systems; 4, 3, 2 in those of
 // index 3. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4, VII.6;
@@ -34,6 +35,11 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
 /// Newton contracts this fast: the derivatives serve another step.
 constexpr double fast = 1e-3;
+/// Shortenings of a step, each with fresh derivatives, behind which Newton's method takes those of
+/// all stages; steps in a row that needed it, behind which nothing else is tried.
+constexpr int shortenings = 4, needed_always = 3;
+/// No last step of index 3 is shorter than this part of the one before: see cubic_is_better().
+constexpr double short_rest = 0.125;
 
 class Radau5 {
  public:
@@ -43,11 +49,13 @@ class Radau5 {
         options_(options),
         span_(span),
         error_(system, gauge_, options, span),
-        n_(static_cast<std::size_t>(system.size())) {
+        n_(static_cast<std::size_t>(system.size())),
+        power_(powers_of(system)) {
     for (auto* v : {&y_, &ydot_, &y0_, &ydot0_}) v->resize(n_);
     for (auto* z : {&z_, &trial_, &sample_})
       for (auto& v : *z) v.resize(n_);
     if (gauge_ != nullptr) stages_in_gauge_.emplace(*gauge_);
+    for (const int power : power_) of_index_three_ |= power > 1;
   }
 
   static const char* name() { return "radau5"; }
@@ -88,6 +96,7 @@ class Radau5 {
     ydot0_ = ydot_;
     t_ = t;
     error_.forget();
+    failure_ = "the step became as short as the rounding of t";
     while (true) {
       const double t1 = step_end(t, end);
       if (options_.step > 0 && rejected_ && have_derivatives_)
@@ -113,9 +122,14 @@ class Radau5 {
     if (t >= t1_ - 4 * epsilon * std::abs(t1_)) {
       std::copy(y_.begin(), y_.end(), y);
       std::copy(ydot_.begin(), ydot_.end(), ydot);
-    } else if (!step_to(t, y, ydot)) {
-      at(t, y, nullptr);
-      for (std::size_t k = 0; k < n_; ++k) ydot[k] = slope(z_, k, (t - t0_) / done_) / done_;
+    } else {
+      const double part = (t - t0_) / done_;
+      const bool stepped = step_to(t, y, ydot);
+      for (std::size_t k = 0; k < n_; ++k) {
+        if (stepped && !cubic_is_better(power_[k], part)) continue;
+        y[k] = y0_[k] + polynomial(z_, k, part);
+        ydot[k] = slope(z_, k, part) / done_;
+      }
     }
     return true;
   }
@@ -125,6 +139,12 @@ class Radau5 {
     if (stages_) {
       c.evaluations = stages_->evaluations;
       c.newton_iterations = stages_->iterations;
+    }
+    if (whole_) {
+      c.evaluations += whole_->evaluations;
+      c.jacobians += whole_->jacobians;
+      c.factorizations += whole_->iterations;
+      c.newton_iterations += whole_->iterations;
     }
     return c;
   }
@@ -140,15 +160,19 @@ class Radau5 {
   double step_end(double t, double end) {
     if (options_.step > 0) {
       const FixedGrid grid(start_, options_.step);
-      const double t1 = grid.next(counters_.steps, end);
+      double t1 = grid.next(counters_.steps, end);
+      if (of_index_three_ && end - t1 < short_rest * options_.step) t1 = end;
       changed_ |= grid.length(t, t1) != h_;
       h_ = grid.length(t, t1);
       return t1;
     }
     double t1 = t + h_;
-    if (t + 1.01 * h_ >= end) t1 = end;
+    if (t + 1.01 * h_ >= end)
+      t1 = end;
+    else if (of_index_three_ && t + (1 + short_rest) * h_ > end)
+      t1 = t + 0.5 * (end - t);
     if (t1 != t + h_) changed_ = true;
-    if (t1 == end) h_ = end - t;
+    if (t1 == end || t1 != t + h_) h_ = t1 - t;
     return t1;
   }
 
@@ -173,14 +197,23 @@ class Radau5 {
     guess(trial_, h_, 1);
     const int most = options_.step > 0 ? patient_iterations : Prediction::most_iterations;
     const StepStart start{t_, y0_.data(), ydot0_.data()};
-    const Outcome outcome =
-        stages_->solve(*factors_, t, h_, y0_.data(), norm, error_.fraction(), most, trial_);
+    const bool only_whole = whole_steps_ >= needed_always;
+    Outcome outcome = only_whole ? Outcome::slow
+                                 : stages_->solve(*factors_, t, h_, y0_.data(), norm,
+                                                  error_.fraction(), most, trial_);
+    bool whole = false;
+    if (outcome == Outcome::slow || outcome == Outcome::diverged) {
+      if (!only_whole && error_.rounding_is_left(*stages_, start))
+        outcome = Outcome::converged;
+      else if (whole_is_due())
+        outcome = solve_whole(t, norm), whole = true;
+    }
     switch (outcome) {
       case Outcome::converged:
         break;
       case Outcome::slow:
       case Outcome::diverged:
-        if (error_.rounding_is_left(*stages_, start)) break;
+        unsolved_ += derivatives_fresh_;
         return fail("Newton's method did not converge", 0.5);
       case Outcome::evaluation_failed:
         return fail(evaluation_cause(system_.failure()), 0.25);
@@ -191,11 +224,25 @@ class Radau5 {
         options_.step > 0 ? 0
                           : error_.of(*stages_, *factors_, start, h_, trial_, first_ || rejected_);
     if (!std::isfinite(error)) return fail("a value that is not a finite number came up", 0.25);
-    const double by_error = Prediction::divisor(error, stages_->count);
+    const double by_error = Prediction::divisor(error, whole ? 1 : stages_->count);
     if (error >= 1)
       return fail("the local error stayed above its tolerance", first_ ? 0.1 : 1 / by_error);
+    whole_steps_ = whole ? whole_steps_ + 1 : 0;
+    unsolved_ = 0;
     accept(t, t1, error, by_error);
+    if (whole) have_derivatives_ = false;
     return true;
+  }
+
+  /// Whether the simplified iteration has failed often enough for the whole one to be tried.
+  bool whole_is_due() const {
+    return whole_steps_ > 0 || unsolved_ >= shortenings ||
+           (options_.step > 0 && derivatives_fresh_);
+  }
+  Outcome solve_whole(double t, const WeightedNorm& norm) {
+    if (!whole_) whole_ = std::make_unique<WholeStages>(system_);
+    guess(trial_, h_, 1);
+    return whole_->solve(t, h_, gamma / h_, y0_.data(), norm, error_.fraction(), trial_);
   }
 
   bool fail(std::string cause, double factor) {
@@ -252,7 +299,7 @@ class Radau5 {
     error_.forget();
     guess(sample_, h, 0);
     return (*look_)(t0_, h, gamma / done_, y0_.data(), ydot0_.data(), norm, error_.fraction(),
-                    sample_, y, ydot);
+                    whole_steps_ > 0, sample_, y, ydot);
   }
 
   DaeSystem& system_;
@@ -266,13 +313,18 @@ class Radau5 {
   std::unique_ptr<Stages> stages_;
   std::unique_ptr<Factors> factors_;
   std::unique_ptr<Look> look_;                 ///< null until asked for
+  std::unique_ptr<WholeStages> whole_;         ///< the same
   std::vector<double> y_, ydot_, y0_, ydot0_;  ///< at the step's end and start
   StageValues z_, trial_, sample_;
+  std::vector<int> power_;  ///< by variable
+  bool of_index_three_ = false;
   double start_ = 0;                   ///< of the run [s]
   double t_ = 0;                       ///< where the step under way begins [s]
   double t0_ = 0, t1_ = 0, done_ = 0;  ///< the last step [s]
   double h_ = 0;                       ///< tried next [s]
   bool first_ = true, rejected_ = false;
+  int unsolved_ = 0;     ///< trials of this step that Newton's method left, derivatives fresh
+  int whole_steps_ = 0;  ///< in a row, with derivatives of all stages
   bool changed_ = true;  ///< h_ is not that of the factors
   bool have_derivatives_ = false, derivatives_fresh_ = false, have_factors_ = false;
   std::string failure_;

@@ -59,18 +59,8 @@ Outcome Stages::solve(const Factors& f, double t, double h, const double* y,
 }
 
 void Stages::filter(const Factors& f, double h, double* x) {
-  const JacobianPattern& pattern = system_.pattern();
   std::fill(rate_.begin(), rate_.end(), 0.0);
-  for (std::size_t column = 0; column < n_; ++column) {
-    const double value = gamma / h * x[column];
-    if (pattern.column_start.empty()) {
-      for (std::size_t row = 0; row < n_; ++row) rate_[row] += by_rate_[column * n_ + row] * value;
-      continue;
-    }
-    const auto end = static_cast<std::size_t>(pattern.column_start[column + 1]);
-    for (auto k = static_cast<std::size_t>(pattern.column_start[column]); k < end; ++k)
-      rate_[static_cast<std::size_t>(pattern.row[k])] += by_rate_[k] * value;
-  }
+  add_product(system_.pattern(), by_rate_, gamma / h, x, rate_);
   f.real->solve(rate_.data());
   std::copy(rate_.begin(), rate_.end(), x);
 }

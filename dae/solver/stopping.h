@@ -46,8 +46,9 @@ inline double thread_seconds() {
 #endif
 }
 
-/// CPU time of the calling thread since construction against a limit; looks at the clock once in 64
-/// calls, which is what a clock read of 0.2-1 us may cost beside steps of the same length.
+/// CPU time of the calling thread since construction against a limit; looks at the clock once in so
+/// many calls as take a hundredth of a second, at the most 64: a clock read of 0.2-1 us is then
+/// little beside steps of the same length.
 class CpuLimit {
  public:
   /// `spent`: of the limit, before.
@@ -55,13 +56,52 @@ class CpuLimit {
       : limit_(seconds), start_(seconds > 0 ? thread_seconds() - spent : 0) {}
   double seconds() const { return limit_; }
   bool exceeded() {
-    if (!(limit_ > 0) || ++calls_ % 64 != 0) return false;
-    return thread_seconds() - start_ > limit_;
+    if (!(limit_ > 0) || ++calls_ < between_) return false;
+    const double now = thread_seconds() - start_;
+    between_ = now - last_ > 0.01 ? (between_ + 1) / 2 : between_ < 64 ? 2 * between_ : 64;
+    calls_ = 0;
+    last_ = now;
+    return now > limit_;
   }
 
  private:
   double limit_, start_;
-  long calls_ = 0;
+  double last_ = 0;               ///< when it was looked at [s]
+  long calls_ = 0, between_ = 1;  ///< since then; until the next look
+};
+
+/// A run against the limit of its steps: as soon as thirty thousand of them were so short that
+/// the limit would be reached before the end, it need not go on to find out.
+class Pace {
+ public:
+  /// `count`: of the steps before t0.
+  Pace(long count, double t0, double end, long limit)
+      : at_(t0), end_(end), limit_(limit), next_(count + looked_at) {}
+  /// After `count` steps, at t.
+  bool is_hopeless(long count, double t) {
+    if (count < next_) return false;
+    per_step_ = (t - at_) / static_cast<double>(looked_at);
+    at_ = t;
+    next_ = count + looked_at;
+    return static_cast<double>(limit_ - count) * per_step_ < end_ - t;
+  }
+  std::string in_words() const {
+    return "its last " + std::to_string(looked_at) + " steps took " + in_seconds(per_step_) +
+           " each, and at that pace the limit of " + std::to_string(limit_) +
+           " steps is reached before the end; expected equations without jumps and poles there, "
+           "a method for stiff ones, or a larger tolerance";
+  }
+
+ private:
+  static constexpr long looked_at = 30'000;
+  static std::string in_seconds(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1e s", x);
+    return text;
+  }
+
+  double at_, end_, per_step_ = 0;
+  long limit_, next_;
 };
 
 }  // namespace momenta

@@ -35,8 +35,10 @@ class Apart {
   }
 
   /// |Φ|∞ in those units.
-  double gap(const Eigen::VectorXd& phi) {
-    return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&worst_);
+  double gap(const Eigen::VectorXd& phi) { return gap(phi, worst_); }
+  /// And of which row. Of Φ̇ alike.
+  double gap(const Eigen::VectorXd& phi, Eigen::Index& row) const {
+    return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&row);
   }
   /// |Φ|₂ that rounding leaves of rows of lengths [m], or of angles [rad], with room.
   double rounding(bool angles) const {
@@ -50,6 +52,14 @@ class Apart {
   /// Largest rate of a joint, slides in lengths of the scene [1/s].
   double speed(const Eigen::VectorXd& u) const {
     return u.size() > 0 ? u.cwiseQuotient(units_.rates).cwiseAbs().maxCoeff() : 0;
+  }
+  /// q (nq), slides in lengths of the scene.
+  std::vector<double> in_units(const Eigen::VectorXd& q) const {
+    std::vector<double> pose(q.begin(), q.end());
+    for (const auto& body : mechanism_.tree().bodies)
+      for (int i = 0; i < std::min(body.nq, body.nv); ++i)
+        pose[static_cast<std::size_t>(body.q + i)] /= units_.rates[body.u + i];
+    return pose;
   }
   /// One sentence where the loops have come apart at t [s]; empty where they hold. `at_sample`:
   /// after all corrections.

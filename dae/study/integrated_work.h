@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace momenta {
 
@@ -23,21 +24,27 @@ class IntegratedWork {
                                         : loses_energy(mechanism.scene());
   }
 
-  /// `power(t, watts)` at times inside the step that was just taken; false: no value, and the step
-  /// counts as it was last known. `inside`: the work up to times inside it will be asked for.
+  /// `power(t, watts, flow)` at times inside the step that was just taken: of all sources, and the
+  /// sum of their absolute values; false: no value, and the step counts as it was last known.
+  /// `inside`: the work up to times inside it will be asked for.
   template <class Power>
   bool step(double t0, double t1, bool inside, Power&& power) {
     work_ = until(end_);
     from_ = t0;
     end_ = t1;
     count_ = inside ? nine.size() : five.size();
-    for (std::size_t i = 0; i < count_; ++i)
-      if (!power(t0 + point(i) * (t1 - t0), power_[i])) return false;
+    double mean = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      double flow = 0;
+      if (!power(t0 + point(i) * (t1 - t0), power_[i], flow)) return false;
+      mean += flow / static_cast<double>(count_);
+    }
+    turned_over_ += mean * (t1 - t0);
     return true;
   }
 
   void carry(Memory& memory) {
-    memory(work_), memory(from_), memory(end_), memory(count_);
+    memory(work_), memory(from_), memory(end_), memory(count_), memory(turned_over_);
     memory(power_.data(), power_.size());
   }
 
@@ -45,7 +52,11 @@ class IntegratedWork {
   void add(double work) {
     work_ = until(end_) + work;
     from_ = end_;
+    turned_over_ += std::abs(work);
   }
+
+  /// What went in and out through all of them so far, to a few digits [J].
+  double turned_over() const { return turned_over_; }
 
   /// Up to a time in the last step [J].
   double until(double t) const {
@@ -100,7 +111,8 @@ class IntegratedWork {
     return sum;
   }
 
-  double work_ = 0;  ///< up to from_ [J]
+  double work_ = 0;         ///< up to from_ [J]
+  double turned_over_ = 0;  ///< up to end_ [J]
   double from_ = 0, end_ = 0;
   std::size_t count_ = five.size();
   std::array<double, 9> power_{};  ///< at the points of the last step [W]

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/solver/integrators.h>
@@ -20,8 +21,8 @@ namespace {
 using Rows = std::vector<std::vector<double>>;
 
 constexpr double tight = 1e-22, loose = 1e-18;
-/// Prescribed motion is a function of t, and t is a double: nothing is to be had below its
-/// rounding.
+/// Prescribed motion and formulas of forces may be functions of t, and t is a double: nothing is to
+/// be had below its rounding.
 constexpr double tight_in_time = 1e-14, loose_in_time = 1e-12;
 /// Of stiff motions: their estimates are far above their errors.
 constexpr double tight_implicit = 1e-17, loose_implicit = 1e-14;
@@ -32,6 +33,28 @@ constexpr double shortest = 1e-9;  ///< step, of the interval
   std::snprintf(text, sizeof text, "%.6g", t);
   throw std::runtime_error("the reference in quadruple precision ends at t = " + std::string(text) +
                            " s: " + why);
+}
+
+/// Whether t stands in the equations by itself.
+bool takes_time(const Mechanism& mechanism) {
+  if (mechanism.plan().drives) return true;
+  const Scene& scene = mechanism.scene();
+  if (scene.lagrangian) return false;  // whose plan says so
+  const FormulaReader reader(scene);
+  const auto takes_it = [](const Formula& formula) {
+    return std::any_of(formula.signals.begin(), formula.signals.end(),
+                       [](const Signal& s) { return s.kind == Signal::Kind::time; });
+  };
+  bool takes = false;
+  for (const ForceSpec& force : scene.forces) {
+    const std::vector<OwnName> own = reader.own_names(force);
+    each_formula(force, [&](const std::string&, const std::string& text) {
+      takes = takes || takes_it(reader.read(text, own));
+    });
+  }
+  for (const LoopSpec& loop : scene.loops)
+    takes = takes || (has_equation(loop) && takes_it(reader.read(loop.equation)));
+  return takes;
 }
 
 /// Whether an explicit method at a tolerance of runs is held by its stability.
@@ -131,8 +154,7 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
     for (const auto& c : impulse_columns(mechanism)) columns.push_back(c.label());
   const auto more = impulses ? static_cast<std::size_t>(mechanism.m()) : 0,
              size = static_cast<std::size_t>(mechanism.nq() + mechanism.nv()) + more;
-  const bool in_time = mechanism.plan().drives,
-             implicit = is_stiff(mechanism, start, end, going_on);
+  const bool in_time = takes_time(mechanism), implicit = is_stiff(mechanism, start, end, going_on);
   const auto solved = [&](double quad, double in_steps, double of_time, OwnReferenceForces* told) {
     const double least = in_time ? of_time : 0;
     return implicit ? solve(mechanism, start, end, count, std::max(in_steps, least),

@@ -98,11 +98,19 @@ bool PassedLimits::is_of(const PassedLimit& p, const Limited& l) {
   return p.joint == l.name && p.of_force == l.of_force();
 }
 
+PassedLimit* PassedLimits::known(Limited& l, std::vector<PassedLimit>& passed) {
+  if (l.noted < passed.size() && is_of(passed[l.noted], l)) return &passed[l.noted];
+  if (l.noted == nowhere) return nullptr;
+  const auto at =
+      std::find_if(passed.begin(), passed.end(), [&](const PassedLimit& p) { return is_of(p, l); });
+  l.noted = at == passed.end() ? nowhere : static_cast<std::size_t>(at - passed.begin());
+  return at == passed.end() ? nullptr : &*at;
+}
+
 /// What is known of the joint, or the note that it passes at t.
-PassedLimit& PassedLimits::entry(const Limited& l, double t, double x,
-                                 std::vector<PassedLimit>& passed) {
-  for (PassedLimit& p : passed)
-    if (is_of(p, l)) return p;
+PassedLimit& PassedLimits::entry(Limited& l, double t, double x, std::vector<PassedLimit>& passed) {
+  if (PassedLimit* p = known(l, passed)) return *p;
+  l.noted = passed.size();
   passed.push_back({l.name, l.limits[0], l.limits[1], t, x, t, l.slides, l.stops, l.of == Of::slot,
                     l.of_force()});
   return passed.back();
@@ -125,7 +133,7 @@ void PassedLimits::step(double t1, const std::function<const double*(double)>& q
   };
   if (!(h > 0) || !read(t0 + 0.5 * h, middle_) || !read(t1, end_)) return;
   for (std::size_t i = 0; i < limited_.size(); ++i) {
-    const Limited& l = limited_[i];
+    Limited& l = limited_[i];
     double at = t0, far = last_[i];
     const auto take = [&](double t, double x) {
       if (!(beyond(l, x) > beyond(l, far))) return;
@@ -140,10 +148,9 @@ void PassedLimits::step(double t1, const std::function<const double*(double)>& q
     if (s > 0 && s < 1 && beyond(l, last_[i] + s * (b + c * s)) > 0 && read(t0 + s * h, between_))
       take(t0 + s * h, between_[i]);
     if (!(beyond(l, far) > 0)) continue;
-    const bool known = std::any_of(passed.begin(), passed.end(),
-                                   [&](const PassedLimit& p) { return is_of(p, l); });
+    const bool is_known = known(l, passed) != nullptr;
     double since = at;
-    if (!known && !(beyond(l, last_[i]) > 0)) {
+    if (!is_known && !(beyond(l, last_[i]) > 0)) {
       double within = t0;
       for (int k = 0; k < 50 && since - within > 1e-12 * std::abs(t1); ++k) {
         const double t = 0.5 * (within + since);
@@ -152,7 +159,7 @@ void PassedLimits::step(double t1, const std::function<const double*(double)>& q
       }
     }
     PassedLimit& p = entry(l, since, far, passed);
-    if (!known || beyond(l, far) > beyond(l, p.farthest)) {
+    if (!is_known || beyond(l, far) > beyond(l, p.farthest)) {
       p.farthest = far;
       p.farthest_at = at;
     }

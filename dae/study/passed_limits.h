@@ -38,6 +38,7 @@ class PassedLimits {
   /// Whose value is looked at: a joint's coordinate, the angle of a spherical joint, the place of a
   /// point along the chords of an open slot, a sum of coordinates, the length of a spring-damper.
   enum class Of { coordinate, angle, slot, sum, length };
+  static constexpr auto nowhere = static_cast<std::size_t>(-1);
   struct Limited {
     std::string name;
     std::array<double, 2> limits;
@@ -45,6 +46,7 @@ class PassedLimits {
     int place;  ///< in q; of a slot that of its loop in the scene, of a length that among them
     bool slides, stops;
     std::vector<std::pair<int, double>> terms{};  ///< of a sum: places in q, ratios
+    std::size_t noted = 0;                        ///< where it is among those passed, or `nowhere`
     bool of_force() const { return of == Of::sum || of == Of::length; }
   };
   void add_force(const Mechanism& mechanism, const ForceSpec& force);
@@ -52,7 +54,9 @@ class PassedLimits {
   void values(double t, const double* q, std::vector<double>& x);
   static double beyond(const Limited& l, double x);
   static bool is_of(const PassedLimit& p, const Limited& l);
-  static PassedLimit& entry(const Limited& l, double t, double x, std::vector<PassedLimit>& passed);
+  /// What is known of it; null: nothing.
+  static PassedLimit* known(Limited& l, std::vector<PassedLimit>& passed);
+  static PassedLimit& entry(Limited& l, double t, double x, std::vector<PassedLimit>& passed);
 
   std::vector<Limited> limited_;
   std::unique_ptr<Evaluation<double>> e_;  ///< where there are open slots or lengths

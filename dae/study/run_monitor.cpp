@@ -21,7 +21,8 @@ RunMonitor::RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene,
       errors_(mechanism, request.reference, result.settings.end_time, result.series),
       row_(mechanism, request.reactions || errors_.takes_reactions()),
       works_(IntegratedWork::has_any(mechanism)),
-      limits_(mechanism) {
+      limits_(mechanism),
+      departures_(mechanism, result.settings, result.settings.end_time - start.t) {
   if (request.keep_trajectory)
     result.trajectory.columns = trajectory_columns(mechanism, request.reactions);
   if (mechanism.m() > 0) {
@@ -88,6 +89,14 @@ bool RunMonitor::read(double t, const double* y, const double* ydot) {
 bool RunMonitor::sample(double t, const double* y, const double* ydot) {
   if (!read(t, y, ydot)) {
     trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
+    Eigen::VectorXd u(mechanism_.nv()), none = u, pdot = u;
+    none.setZero();
+    const bool by_mass_alone = mechanism_.m() == 0 || mechanism_.scene().lagrangian.has_value();
+    if (const DaeSystem* dae = form_->dae(); dae && !dae->failure().empty())
+      trouble_ += ": " + dae->failure();
+    else if (!written_ && by_mass_alone &&
+             !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
+      trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
     return false;
   }
   const Drift position = position_drift(t, now_.q);
@@ -144,6 +153,14 @@ void RunMonitor::note(double t, const Measured& now) {
   const double exchanged = now.kinetic + std::abs(now.potential - potential_at_start_);
   if (!(now.kinetic <= result_.kinetic_energy_max)) result_.kinetic_energy_max = now.kinetic;
   if (!(exchanged <= result_.energy_scale)) result_.energy_scale = exchanged;
+  departures_.look_at_energy(t, std::abs(now.kinetic) + std::abs(now.potential),
+                             result_.energy_scale + work_.turned_over(),
+                             std::abs(now.energy - energy_at_start_));
+  if (apart_) {
+    Eigen::Index row = 0;
+    const double opening = apart_->gap(phi_, row);
+    departures_.look_at_rates(t, opening, row, apart_->speed(now_.u));
+  }
   s.t.push_back(t);
   s.position_drift.push_back(now.position.named(mechanism_));
   s.velocity_drift.push_back(now.velocity.named(mechanism_));
@@ -189,6 +206,7 @@ void RunMonitor::carry(Memory& memory) {
   if (singular_crossings_) singular_crossings_->carry(memory);
   if (written_) written_->carry(memory);
   memory(energy_at_start_), memory(potential_at_start_);
+  departures_.carry(memory);
   memory(largest_between_.lengths), memory(largest_between_.angles), memory(fastest_);
   errors_.carry(memory), memory(rows_);
   limits_.carry(memory);
@@ -211,6 +229,10 @@ void RunMonitor::finish() {
   };
   if (singular_crossings_) singular_crossings_->finish();
   result_.energy_error_max = largest(s.energy_error);
+  result_.energy_turned_over = result_.energy_scale + work_.turned_over();
+  departures_.judge(result_);
+  if (singular_crossings_ && now_.q.size() > 0)  // none where a run that goes on has no time left
+    result_.last_pose = apart_->in_units(now_.q);
   result_.multiplier_difference_max = largest(s.multiplier_difference);
   result_.reaction_errors = errors_.of_reactions();
   if (request_.reference && result_.status == "done" && errors_.compared() > 0) {
@@ -236,6 +258,9 @@ void RunMonitor::finish() {
   const Drift left = drift_of(mechanism_, residue_);
   const double rounding = std::max(apart_->rounding(!lengths), 4 * left.named(mechanism_)),
                angles = std::max(apart_->rounding(true), 4 * left.angles);
+  constexpr double of_steps = 10;  // what a run adds to the rounding of one pose
+  result_.drift_rounding = std::max(rounding_level, of_steps * rounding);
+  result_.angle_rounding = std::max(rounding_level, of_steps * angles);
   result_.position_growth = growth(s.position_drift, rounding);
   result_.velocity_growth = growth(s.velocity_drift, rounding * fastest_);
   if (!lengths || !mechanism_.has_angles()) return;

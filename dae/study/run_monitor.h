@@ -7,6 +7,7 @@
 #include <momenta/dae/cut/written_motion.h>
 #include <momenta/dae/measure/drive_power.h>
 #include <momenta/dae/study/apart.h>
+#include <momenta/dae/study/departures.h>
 #include <momenta/dae/study/event_watch.h>
 #include <momenta/dae/study/integrated_work.h>
 #include <momenta/dae/study/passed_limits.h>
@@ -108,8 +109,8 @@ class RunMonitor {
   /// `inside`: the energy at times inside the step will be asked for.
   bool look_between(double t0, double t1, const Interpolant& between, bool inside);
   bool look_at_middle(double t, const Interpolant& between);
-  /// Power of what has no potential, at a time in the step.
-  bool power(double t, const Interpolant& between, double& watts);
+  /// Power of what has no potential, at a time in the step: the sum, and that of absolute values.
+  bool power(double t, const Interpolant& between, double& watts, double& flow);
   /// Coordinates at the film's times within the last step.
   void film_until(double t1, const Interpolant& between);
   /// Whether an output time that is still to come lies before t or at it.
@@ -156,6 +157,7 @@ class RunMonitor {
   double ended_at_ = 0;
   std::optional<SingularCrossings> singular_crossings_;
   std::optional<Apart> apart_;
+  Departures departures_;
   std::string came_apart_;
   Closed closed_;
   double energy_at_start_ = 0, potential_at_start_ = 0;

@@ -4,6 +4,7 @@
 #include <momenta/dae/study/run_monitor.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace momenta {
 
@@ -41,9 +42,10 @@ bool RunMonitor::look_between(double t0, double t1, const Interpolant& between, 
         result_.passed_limits);
   if (errors_.measures_own() && (errors_.sees_every_step() || sample_before(t1 * (1 + 1e-12))))
     errors_.step(t0, t1, between, state_);
-  if ((works_ || drives_->any()) &&
-      !work_.step(t0, t1, inside || sample_before(t1 * (1 - 1e-12)),
-                  [&](double t, double& watts) { return power(t, between, watts); }))
+  if ((works_ || drives_->any()) && !work_.step(t0, t1, inside || sample_before(t1 * (1 - 1e-12)),
+                                                [&](double t, double& watts, double& flow) {
+                                                  return power(t, between, watts, flow);
+                                                }))
     return true;
   return !request_.going_on || request_.going_on();
 }
@@ -60,20 +62,24 @@ bool RunMonitor::look_at_middle(double t, const Interpolant& between) {
   return true;
 }
 
-bool RunMonitor::power(double t, const Interpolant& between, double& watts) {
+bool RunMonitor::power(double t, const Interpolant& between, double& watts, double& flow) {
   between(t, state_.data());
   if (!read(t, state_.data(), nullptr)) return false;
-  watts = 0;
+  watts = flow = 0;
+  const auto add = [&](double power) {
+    watts += power;
+    flow += std::abs(power);
+  };
   if (works_) {
     e_->place(t, now_.q.data());
     e_->move(now_.u.data());
-    watts = e_->dissipated_power(now_.q.data(), now_.u.data());
+    add(e_->dissipated_power(now_.q.data(), now_.u.data()));
     if (friction_) {
       if (!friction_->at(t, now_.q.data(), now_.u.data())) return false;
-      watts += friction_->power(now_.u.data());
+      add(friction_->power(now_.u.data()));
     }
   }
-  if (drives_->any()) watts += drives_->at(t, now_.q.data(), now_.u.data());
+  if (drives_->any()) add(drives_->at(t, now_.q.data(), now_.u.data()));
   return true;
 }
 

@@ -130,23 +130,26 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
-  auto& [scene, settings, status, reason, stopped_at, stiff_from, changed_at, counters, partitions,
-         jacobian, linear_solver, cpu_s, wall_s, repeats, untimed, drift_unit, position_drift_max,
-         velocity_drift_max, between_steps_max, position_growth, velocity_growth, angle_drift_max,
-         angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
-         energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
-         force_error_max, multiplier_error_max, multiplier_difference_max, momentum_error_max,
-         impulse_error_max, effort_error_max, reaction_error_max, work_error_max, reaction_errors,
-         integrated, rank, dependent_rows, residue, weak_evaluations, faded_rows,
-         singular_crossings, least_pivot, undetermined, passed_limits, events, event_remarks, stops,
-         series, trajectory, film] = s;
+  auto& [scene, settings, status, reason, departure, stopped_at, stiff_from, changed_at, counters,
+         partitions, jacobian, linear_solver, cpu_s, wall_s, repeats, untimed, drift_unit,
+         drift_rounding, angle_rounding, position_drift_max, velocity_drift_max, between_steps_max,
+         position_growth, velocity_growth, angle_drift_max, angle_rate_drift_max,
+         angle_between_steps_max, angle_growth, angle_rate_growth, energy_error_max,
+         kinetic_energy_max, energy_scale, energy_turned_over, last_pose, position_error_max,
+         velocity_error_max, force_error_max, multiplier_error_max, multiplier_difference_max,
+         momentum_error_max, impulse_error_max, effort_error_max, reaction_error_max,
+         work_error_max, reaction_errors, integrated, rank, dependent_rows, residue,
+         weak_evaluations, faded_rows, singular_crossings, least_pivot, undetermined, passed_limits,
+         events, event_remarks, stops, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
+  each("departure", departure);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
   each("cpu_s", cpu_s), each("wall_s", wall_s), each("repeats", repeats);
   each("untimed", untimed);
   each("drift_unit", drift_unit);
+  each("drift_rounding", drift_rounding), each("angle_rounding", angle_rounding);
   each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
   each("between_steps_max", between_steps_max);
   each("angle_drift_max", angle_drift_max), each("angle_rate_drift_max", angle_rate_drift_max);
@@ -154,7 +157,8 @@ void list(const Each& each,
   each("angle_growth", angle_growth), each("angle_rate_growth", angle_rate_growth);
   each("position_growth", position_growth), each("velocity_growth", velocity_growth);
   each("energy_error_max", energy_error_max), each("kinetic_energy_max", kinetic_energy_max);
-  each("energy_scale", energy_scale);
+  each("energy_scale", energy_scale), each("energy_turned_over", energy_turned_over);
+  each("last_pose", last_pose);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
   each("force_error_max", force_error_max), each("multiplier_error_max", multiplier_error_max);
   each("multiplier_difference_max", multiplier_difference_max);

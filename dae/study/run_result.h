@@ -114,9 +114,13 @@ struct RunResult {
   std::string scene;     ///< its name
   RunSettings settings;  ///< as given, with defaults filled in
   /// done; event: one of the scene's ended it; failed, time limit, or came apart: the loops opened
-  /// by more than a form is allowed to leave (apart.h)
+  /// by more than a form is allowed to leave (apart.h), or the balance of energy or the rates of
+  /// loops were lost (departures.h)
   std::string status = "done";
-  std::string reason;     ///< one sentence when not done
+  std::string reason;  ///< one sentence when not done
+  /// One sentence on how far the balance of energy or the rates of loops are off where a run that
+  /// reached its end is not to be relied on (departures.h); empty: they are not.
+  std::string departure;
   double stopped_at = 0;  ///< [s]
   /// Time [s] since which stability limited the steps of an explicit method (solver/stiffness.h).
   double stiff_from = not_measured;
@@ -132,6 +136,8 @@ struct RunResult {
   std::string untimed;           ///< why repeats gave no times; one clause, empty: they did
   /// Unit of the position drift: m, or rad where all rows of Φ are angles; empty without loops.
   std::string drift_unit;
+  /// Drifts below these are rounding, or what the start left open.
+  double drift_rounding = rounding_level, angle_rounding = rounding_level;
   /// Largest |Φ|₂ at the samples.
   double position_drift_max = not_measured;
   double velocity_drift_max = not_measured;  ///< largest |Φ̇|₂ there
@@ -149,6 +155,11 @@ struct RunResult {
   double kinetic_energy_max = not_measured;  ///< largest T at the samples [J], the scale of rates
   /// Largest T + |V − V(0)| at the samples [J]: energy errors compare to it.
   double energy_scale = not_measured;
+  /// That, and what went through dampers, friction, formulas, drives and impacts [J].
+  double energy_turned_over = not_measured;
+  /// Coordinates where it stopped, slides in lengths of the scene; empty where singular crossings
+  /// are not looked for.
+  std::vector<double> last_pose;
   double position_error_max = not_measured;         ///< largest of Series::position_error
   double velocity_error_max = not_measured;         ///< largest of Series::velocity_error
   double force_error_max = not_measured;            ///< largest of Series::force_error
@@ -232,6 +243,11 @@ inline bool has_both_drifts(const RunResult& run) {
 /// Whether a run went as far as it was meant to: to its end, or to an event that ends it.
 inline bool finished(const RunResult& run) {
   return run.status == "done" || run.status == "event";
+}
+
+/// Whether it is to be relied on as far as it went.
+inline bool reliable(const RunResult& run) {
+  return finished(run) && run.departure.empty();
 }
 
 /// Whether a run changed its integrator on the way.

@@ -32,8 +32,12 @@ class StateEvaluator {
       e_->place(given_.t, given_.q.data());
       solvable_ = nv == 0 || kkt_->factor(*e_, given_.t, given_.q.data(), fade_evaluation);
       s_.faded = kkt_->faded();
-      if (!solvable_) leave_out(kkt_->singular_joint());
+      if (!solvable_)
+        leave_out(kkt_->singular_joint());
+      else
+        solvable_ = !only_rounding_holds();
     }
+    if (m == 0 && nv > 0) solvable_ = !only_rounding_holds();
     rates_and_momenta();
     forces();
     free_acceleration();
@@ -73,9 +77,17 @@ class StateEvaluator {
       s_.not_there =
           mechanism_.scene().lagrangian
               ? mechanism_.no_inertia(unheld_.joints.front().rate, given_.t, given_.q.data())
-              : in_words(mechanism_.tree(), unheld_.joints);
+              : in_words(mechanism_, unheld_);
     else if (rate < 0)
       refuse();
+  }
+
+  /// Whether solvers take for inertia what rounding leaves of none.
+  bool only_rounding_holds() {
+    const UnheldJoints unheld = unheld_by_rounding(mechanism_, *e_, given_.t, given_.q.data());
+    if (unheld.joints.empty()) return false;
+    leave_out(unheld.joints.front().rate);
+    return true;
   }
 
   /// v, p, σ, and the evaluation placed and moved there.
@@ -98,8 +110,8 @@ class StateEvaluator {
   void solve_for_rates() {
     if (mechanism_.nv() == 0) return;
     if (mechanism_.m() == 0) {
-      if (!e_->open_momentum_rates(given_.t, given_.q.data(), s_.p.data(), s_.v.data(),
-                                   s_.pdot.data()))
+      if (!solvable_ || !e_->open_momentum_rates(given_.t, given_.q.data(), s_.p.data(),
+                                                 s_.v.data(), s_.pdot.data()))
         no_rates(e_->singular_joint());
       return;
     }
@@ -178,7 +190,7 @@ class StateEvaluator {
     if (mechanism_.nv() == 0) return;
     if (mechanism_.m() > 0) return free_of_loops();
     const double *q = given_.q.data(), t = given_.t;
-    if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data()))
+    if (!solvable_ || !e_->open_accelerations(t, q, s_.v.data(), s_.free.data()))
       return no_inertia(e_->singular_joint());
     if (given_.tau.isZero(0)) return;
     VectorXd with(mechanism_.nv()), without = VectorXd::Zero(mechanism_.nv());
@@ -197,16 +209,6 @@ class StateEvaluator {
     beside(unheld_, -s_.bias, {}, s_.free, nothing);
   }
 
-  std::string words_of(const std::vector<MasslessJoint>& joints) const {
-    if (!mechanism_.scene().lagrangian) return without_inertia(mechanism_.tree(), joints);
-    std::string words;
-    for (const MasslessJoint& joint : joints)
-      words +=
-          (words.empty() ? "coordinate '" : "', '") +
-          mechanism_.scene().lagrangian->coordinates[static_cast<std::size_t>(joint.rate)].name;
-    return words + "' without inertia";
-  }
-
   /// M = Lᵀ D L along the tree.
   void free_of_loops() {
     const auto& pattern = mechanism_.kkt_pattern();
@@ -214,11 +216,14 @@ class StateEvaluator {
     e_->place(given_.t, given_.q.data());
     e_->mass_entries(values.data());
     TreeFactor factor(pattern, mechanism_.nv());
-    if (const int rate = factor.factor(values); rate >= 0) {
-      unheld_free_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), false, rate);
+    const int rate = factor.factor(values);
+    unheld_free_ = rate >= 0
+                       ? unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), false, rate)
+                       : unheld_by_rounding(mechanism_, *e_, given_.t, given_.q.data(), false);
+    if (rate >= 0 || !unheld_free_.joints.empty()) {
       if (s_.not_there.empty())
-        s_.not_there = words_of(unheld_free_.joints) +
-                       " without the loops that hold what is on it: no acceleration.free";
+        s_.not_there =
+            without_loops_in_words(mechanism_, unheld_free_.joints) + ": no acceleration.free";
       VectorXd nothing;
       beside(unheld_free_, -s_.bias, {}, s_.free, nothing);
       return;

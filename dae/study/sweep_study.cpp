@@ -163,7 +163,7 @@ void make(const SweepRequest& request, SweepCase& result) {
   one.progress = [&](double) { return !request.going_on || request.going_on(); };
   const RunResult run = run_form(mechanism, assembly.start, one);
   result.status = run.status;
-  result.reason = run.reason;
+  result.reason = run.reason.empty() ? run.departure : run.reason;
   result.stopped_at = run.stopped_at;
   result.drift_unit = run.drift_unit;
   result.position_drift_max = run.position_drift_max;

@@ -54,7 +54,7 @@ struct SweepRequest {
 struct SweepCase {
   std::vector<double> values;   ///< of the varied numbers
   std::string status = "done";  ///< done, failed, time limit; refused: there is no such mechanism
-  std::string reason;           ///< one sentence when not done
+  std::string reason;           ///< one sentence when not done, or not to be relied on
   double stopped_at = 0;        ///< [s]
   std::string drift_unit;       ///< and the drifts: as of RunResult
   double position_drift_max = not_measured, velocity_drift_max = not_measured,

@@ -2,6 +2,7 @@
 #include <momenta/dae/study/trajectory_row.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace momenta {
 namespace {
@@ -72,15 +73,23 @@ void TrajectoryRow::append_forces(double t, const Snapshot& state) {
 }
 
 void TrajectoryRow::note_undetermined(double t, std::size_t columns,
-                                      std::vector<RunResult::Undetermined>& all) const {
+                                      std::vector<RunResult::Undetermined>& all) {
+  if (noted_.size() != columns_.size()) {  // `all` may come from a run that this one continues
+    noted_.assign(columns_.size(), columns_.size());
+    std::unordered_map<std::string, std::size_t> place;
+    for (std::size_t i = 0; i < all.size(); ++i) place.emplace(all[i].column, i);
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (const auto at = place.find(columns_[c]); at != place.end()) noted_[c] = at->second;
+  }
   for (const std::size_t column : not_unique_) {
     if (column >= columns) return;
-    const std::string& label = columns_[column];
-    auto at =
-        std::find_if(all.begin(), all.end(), [&](const auto& u) { return u.column == label; });
-    if (at == all.end()) at = all.insert(at, {label, 0, t, t});
-    ++at->samples;
-    at->to = t;
+    std::size_t& at = noted_[column];
+    if (at == columns_.size()) {
+      at = all.size();
+      all.push_back({columns_[column], 0, t, t});
+    }
+    ++all[at].samples;
+    all[at].to = t;
   }
 }
 

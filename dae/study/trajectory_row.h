@@ -34,8 +34,7 @@ class TrajectoryRow {
   /// Columns of forces that are not unique at the state.
   const std::vector<std::size_t>& not_unique() const { return not_unique_; }
   /// Counts those at a sample, among the first `columns`.
-  void note_undetermined(double t, std::size_t columns,
-                         std::vector<RunResult::Undetermined>& all) const;
+  void note_undetermined(double t, std::size_t columns, std::vector<RunResult::Undetermined>& all);
 
  private:
   void append_forces(double t, const Snapshot& state);
@@ -48,6 +47,7 @@ class TrajectoryRow {
   std::vector<double> markers_, row_, acting_;
   std::size_t first_force_ = 0;
   std::vector<std::size_t> not_unique_, not_unique_acting_;
+  std::vector<std::size_t> noted_;  ///< by column, where note_undetermined() has it
 };
 
 }  // namespace momenta

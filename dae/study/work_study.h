@@ -37,7 +37,8 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
 /// What a run is judged by: its error against the reference, or without one its largest drift.
 double judged_error(const RunResult& run, bool has_reference);
 
-/// Runs that no other beats in both error and CPU time, by falling error.
+/// Runs that no other beats in both error and CPU time, by falling error; none where they ended on
+/// different branches of the motion.
 std::vector<std::size_t> pareto_front(const std::vector<RunResult>& runs, bool has_reference);
 
 }  // namespace momenta

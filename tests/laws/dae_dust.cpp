@@ -93,6 +93,70 @@ TEST(Dust, PrismaticAlongACylindricalJointMovesTheSameTilted) {
   }
 }
 
+/// A pendulum of two rods in one piece, with a loop between them that ties nothing, alone and
+/// beside one that does: by every form that is a DAE, as without that loop.
+TEST(Dust, LoopsBetweenWeldedBodiesHarmNoForm) {
+  const std::string rods = R"(
+gravity = [0, -9.81, 0]
+[[body]]
+name = "a"
+mass = 1
+shape = { kind = "rod", length = 1 }
+[[body]]
+name = "b"
+mass = 1
+shape = { kind = "rod", length = 1 }
+[[joint]]
+name = "A"
+kind = "revolute"
+child = "a"
+[[joint]]
+name = "B"
+kind = "weld"
+parent = "a"
+child = "b"
+origin = { parent = [1, 0, 0] }
+)",
+                    idle = R"(
+[[loop]]
+name = "W"
+kind = "revolute"
+parent = "a"
+child = "b"
+origin = { parent = [1.5, 0.3, 0], child = [0.5, 0.3, 0] }
+)",
+                    bar = R"(
+[[body]]
+name = "c"
+mass = 0.5
+shape = { kind = "rod", length = 2 }
+[[joint]]
+name = "C"
+kind = "revolute"
+child = "c"
+origin = { parent = [2, 0, 0] }
+position = 2.0
+[[loop]]
+name = "L"
+kind = "distance"
+parent = "b"
+child = "c"
+origin = { parent = [1, 0, 0], child = [2, 0, 0] }
+length = 2.5
+)";
+  for (const std::string& more : {std::string(), bar}) {
+    const RunResult without = two_seconds(Mechanism(parse_scene(rods + more, "rods")), "momentum");
+    ASSERT_EQ(without.status, "done") << without.reason;
+    const Mechanism mechanism(parse_scene(rods + more + idle, "rods"), {.cut = CutChoice::scene});
+    for (const std::string& form : form_names()) {
+      if (form != "momentum" && !is_dae_form(form)) continue;
+      const RunResult r = two_seconds(mechanism, form);
+      ASSERT_EQ(r.status, "done") << form << ": " << r.reason;
+      EXPECT_NEAR(r.trajectory.rows.back()[1], without.trajectory.rows.back()[1], 1e-4) << form;
+    }
+  }
+}
+
 /// The four-bar with a coupler `factor` times as heavy.
 Scene with_coupler(double factor) {
   Scene s = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");

@@ -132,6 +132,35 @@ TEST(EnergyMomentum, RelativeEquilibria) {
   for (std::size_t i = 0; i < rest.size(); ++i) EXPECT_NEAR(rest[i], before[i], 1e-13);
 }
 
+// L with a part linear in the rates: a charge in a magnetic field goes round at 2·1.4/0.3 rad/s,
+// and a bead on a ring in a turning frame keeps Jacobi's energy.
+TEST(EnergyMomentum, KeepsTheEnergyOfGyroscopicForces) {
+  Stepped charge(
+      parse_scene("[lagrangian]\ncoordinates = [\"x\", \"y\"]\n"
+                  "position = [0.2, -0.1]\nvelocity = [1.0, 0.4]\n"
+                  "lagrangian = \"0.15*(x.dot^2 + y.dot^2) + 1.4*(x*y.dot - y*x.dot)\"\n",
+                  "charge.toml"));
+  const double rate = 2 * 1.4 / 0.3, turn = 2 * std::numbers::pi / rate;
+  const auto start = charge.y0();
+  const auto off = [&](int count) {
+    const auto y = charge.steps(start, turn / count, count);
+    return std::hypot(y[0] - start[0], y[1] - start[1]);
+  };
+  const double coarse = off(100), fine = off(200);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_NEAR(coarse / fine, 4, 0.2);
+  const Scene bead = parse_scene(
+      "[lagrangian]\ncoordinates = [\"x\", \"y\"]\nposition = [0.6, -0.8]\n"
+      "lagrangian = \"0.5*((x.dot - 2*y)^2 + (y.dot + 2*x)^2) - 9.81*y - 3*x^2\"\n"
+      "constraints = [{ name = \"ring\", equation = \"hypot(x, y) - 1\" }]\n",
+      "bead.toml");
+  for (const Scene& scene : {charge.mechanism.scene(), bead}) {
+    const RunResult r = run(scene, 0.01, 10);
+    ASSERT_EQ(r.status, "done") << r.reason;
+    EXPECT_LT(r.energy_error_max, 1e-13 * r.energy_scale);
+  }
+}
+
 TEST(EnergyMomentum, ReturnsToItsStart) {
   for (const Scene& scene : {four_bar(), flying_rod()}) {
     Stepped c(scene);

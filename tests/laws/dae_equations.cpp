@@ -303,6 +303,30 @@ TEST(EquationStarts, KeepWhatIsHeld) {
   EXPECT_NE(none.point.why.find("no point near the guess"), std::string::npos) << none.point.why;
 }
 
+// y'² = y at y = 1 leaves y' = ±1: no reason to move y to 0, where y' = 0 is right.
+TEST(EquationStarts, AskForARateThatTheGuessLeavesOpen) {
+  const auto branches = [](const std::string& more) {
+    return file_of({"y"}, {"der(y)^2 = y"}, "values = { y = 1 }\n" + more + "[run]\nend = 3\n");
+  };
+  for (const std::string more : {"", "hold = [\"y\"]\n"}) {
+    const EquationStart open = equation_start(branches(more));
+    EXPECT_NE(
+        open.point.why.find("leave the rate of y undetermined, 1 or -1: expected one of them"),
+        std::string::npos)
+        << open.point.why;
+  }
+  const EquationStart given = equation_start(branches("rates = { y = -0.8 }\n"));
+  EXPECT_EQ(given.point.why, "");
+  EXPECT_NEAR(given.point.y[0], 1, 1e-12);
+  EXPECT_NEAR(given.point.ydot[0], -1, 1e-12);
+  // One rate alone: it is found.
+  const EquationStart one =
+      equation_start(file_of({"y"}, {"der(y)^3 = y"}, "values = { y = 8 }\n"));
+  EXPECT_EQ(one.point.why, "");
+  EXPECT_NEAR(one.point.y[0], 8, 1e-9);
+  EXPECT_NEAR(one.point.ydot[0], 2, 1e-9);
+}
+
 TEST(EquationStarts, SayWhenThereIsNone) {
   const EquationStart none =
       equation_start(file_of({"x"}, {"x^2 + 1 = 0"}, "values = { x = 1 }\n"));
@@ -317,14 +341,14 @@ TEST(EquationStarts, SayWhenThereIsNone) {
 // ----------------------------------------------------------------------------------------
 
 EquationRun run(const EquationFile& file, const std::string& integrator, double tolerance,
-                double step = 0) {
+                double step = 0, int samples = 10) {
   const EquationStart start = equation_start(file);
   EXPECT_EQ(start.point.why, "");
   EquationRunRequest request;
   request.integrator = integrator;
   request.rtol = request.atol = tolerance;
   request.step = step;
-  request.samples = 10;
+  request.samples = samples;
   request.end = file.end;
   EquationRun done = run_equations(file, start, request);
   EXPECT_TRUE(done.done) << done.reason;
@@ -367,6 +391,154 @@ TEST(EquationRuns, OfBothMethodsEndAlike) {
   EquationRunRequest request;
   request.integrator = "ida";
   EXPECT_THROW(run_equations(three, start, request), std::invalid_argument);
+}
+
+// From rest at (1, 0): λ = u² + v² − g y = −3 g y. A sample is no worse than the ends of steps, of
+// which 25 are samples too.
+TEST(EquationRuns, SampleMultipliersRightBehindAStep) {
+  const auto error = [](const EquationRun& r) {
+    double largest = 0;
+    for (const auto& y : r.y) largest = std::max(largest, std::abs(y[4] + 3 * 9.81 * y[1]));
+    return largest;
+  };
+  const EquationFile file = read_equations(example("suites/ivp/pendulum.toml"));
+  const EquationRun often = run(file, "radau5", 1e-6, 0, 1000);
+  EXPECT_LT(error(often), 0.3);
+  // Samples next to the ends of steps of one length.
+  const EquationFile short_run =
+      read_equations(example("suites/ivp/pendulum.toml"), {{"run.end", 1}});
+  const EquationRun ends = run(short_run, "radau5", 1e-9, 0.04, 25),
+                    behind = run(short_run, "radau5", 1e-9, 0.04 / (1 + 1e-5), 25);
+  EXPECT_LT(error(behind), 3 * error(ends));
+}
+
+// x₁ = x₂ = eᵗ, z = −eᵗ/(2 − t). Errors of z of order h are not in x, and hold BDF at order 1 where
+// they are tested.
+TEST(EquationRuns, OfIndexTwoFilterTheirErrors) {
+  const EquationFile file = file_of(
+      {"x1", "x2", "z"},
+      {"der(x1) = (10 - 1/(2-t))*x1 + (2-t)*10*z + (t-3)*exp(t)/(t-2)",
+       "der(x2) = 9/(2-t)*x1 - x2 + 9*z + 2*exp(t)", "(t+2)*x1 + (t^2-4)*x2 = (t^2+t-2)*exp(t)"},
+      "values = { x1 = 1, x2 = 1, z = -0.5 }\n[run]\nend = 1\n");
+  for (const double tolerance : {1e-6, 1e-9}) {
+    const EquationRun r = run(file, "ida", tolerance);
+    EXPECT_LT(r.counters.steps, 1000);
+    EXPECT_NEAR(r.last[0], std::exp(1), 100 * tolerance);
+    EXPECT_NEAR(r.last[1], std::exp(1), 100 * tolerance);
+  }
+}
+
+// All variables are of index 2: a − b = 2 sin t.
+TEST(EquationRuns, TestVariablesOfIndexTwoWhereThereAreNoOthers) {
+  const EquationFile file = file_of(
+      {"a", "b", "c"}, {"der(a) + der(b) + a - b = sin(t)", "a + b = cos(t)", "der(c) = -c"},
+      "values = { c = 1 }\n[run]\nend = 10\n");
+  for (const double tolerance : {1e-4, 1e-6}) {
+    const EquationRun r = run(file, "ida", tolerance);
+    EXPECT_NEAR(r.last[0], 0.5 * std::cos(10) + std::sin(10), 100 * tolerance);
+    EXPECT_NEAR(r.last[2], std::exp(-10), 100 * tolerance);
+  }
+}
+
+// b = e⁻ᵗ, a = (1 − ηt) b. The simplified iteration contracts by 2η/(1 + η) whatever the step is.
+TEST(EquationRuns, ConvergeWhereDerivativesOfTheStartDoNot) {
+  for (const double eta : {0.5, 3.0}) {
+    const std::string text = std::to_string(eta);
+    const EquationFile file = file_of({"a", "b"},
+                                      {"a + " + text + "*t*b = exp(-t)",
+                                       "der(a) + " + text + "*t*der(b) + (1 + " + text + ")*b = 0"},
+                                      "values = { a = 1, b = 1 }\n[run]\nend = 2\n");
+    for (const double step : {0.0, 0.05}) {
+      const EquationRun r = run(file, "radau5", 1e-8, step);
+      for (std::size_t k = 0; k < r.t.size(); ++k)
+        EXPECT_NEAR(r.y[k][1], std::exp(-r.t[k]), 1e-4) << eta << " " << r.t[k];
+      EXPECT_LT(r.counters.steps, 400);
+    }
+  }
+}
+
+TEST(EquationRuns, SayWhatLeavesEveryBound) {
+  const auto reason = [](const std::string& equation, const std::string& integrator) {
+    const EquationFile file = file_of({"x"}, {equation}, "values = { x = 1 }\n[run]\nend = 2\n");
+    EquationRunRequest request;
+    request.integrator = integrator;
+    request.end = 2;
+    const EquationRun r = run_equations(file, equation_start(file), request);
+    EXPECT_FALSE(r.done);
+    return r.reason;
+  };
+  for (const std::string integrator : {"ida", "radau5"}) {
+    const std::string pole = reason("der(x) = x^2", integrator),
+                      root = reason("2*x*der(x) = -1", integrator);
+    EXPECT_NE(pole.find("; x leaves every bound near t = 1"), std::string::npos) << pole;
+    EXPECT_NE(root.find("; the rate of x leaves every bound near t = 1"), std::string::npos)
+        << root;
+  }
+}
+
+// ---- switches
+// ------------------------------------------------------------------------------------
+
+TEST(EquationRuns, BeginAnewAtJumps) {
+  // A condenser behind a square wave, v' = (s − v)/RC.
+  const EquationFile wave = file_of(
+      {"v", "i"}, {"0.3*der(v) = i", "2*i + v = if(sin(2*pi*t) >= 0, 1, -1)"}, "[run]\nend = 2\n");
+  const EquationRun square = run(wave, "ida", 1e-8, 0, 40);
+  ASSERT_EQ(square.t.size(), 41u);
+  double v = 0, begin = 0;
+  for (std::size_t k = 0; k <= 40; ++k) {
+    const double side = (k == 0 ? 0 : (k - 1) / 10) % 2 == 0 ? 1 : -1;
+    if (k > 10 && (k - 1) % 10 == 0) v = square.y[k - 1][0], begin = square.t[k - 1];
+    EXPECT_NEAR(square.y[k][0], side + (v - side) * std::exp(-(square.t[k] - begin) / 0.6), 1e-6)
+        << square.t[k];
+  }
+  EXPECT_EQ(square.switchings, 3);
+  // In an algebraic equation; by the state; of floor, sign, abs, min and max.
+  const auto end = [](const std::vector<std::string>& variables,
+                      const std::vector<std::string>& equations, const std::string& more) {
+    return run(file_of(variables, equations, more), "ida", 1e-8).last[0];
+  };
+  EXPECT_NEAR(end({"x", "z"}, {"der(x) = z - x", "z = if(t < 1, x, 2*x)"},
+                  "values = { x = 1 }\n[run]\nend = 2\n"),
+              std::exp(1), 1e-6);
+  EXPECT_NEAR(end({"x"}, {"der(x) = if(x < 1, 1, 1 + x)"}, "[run]\nend = 2\n"), 2 * std::exp(1) - 1,
+              1e-6);
+  EXPECT_NEAR(end({"x"}, {"der(x) = floor(3*t)"}, "[run]\nend = 2\n"), 5, 1e-7);
+  EXPECT_NEAR(end({"x"}, {"der(x) = sign(t - 0.5)*max(t, 1)"}, "[run]\nend = 2\n"), 1.5, 1e-7);
+  // From rest: friction takes 2/100 of each swing.
+  EXPECT_NEAR(end({"x", "v"}, {"der(x) = v", "der(v) = -100*x - sign(v)"},
+                  "values = { x = 1 }\n[run]\nend = 0.6283185307179586\n"),
+              0.96, 1e-6);
+  EXPECT_NEAR(end({"x"}, {"der(x) = min(abs(t - 1), 0.25)"}, "[run]\nend = 2\n"), 0.4375, 1e-7);
+}
+
+TEST(EquationRuns, NameWhatMakesValuesJump) {
+  const EquationFile file =
+      file_of({"v", "i"}, {"v = if(t < 0.5, 0, 1)", "i = der(v)"}, "[run]\nend = 1\n");
+  EquationRunRequest request;
+  request.integrator = "ida";
+  const EquationRun r = run_equations(file, equation_start(file), request);
+  EXPECT_FALSE(r.done);
+  EXPECT_NE(r.reason.find("'if' of equation 1, 'v = if(t < 0.5, 0, 1)', makes v jump from 0 to 1"),
+            std::string::npos)
+      << r.reason;
+  EXPECT_NEAR(r.stopped_at, 0.5, 1e-9);
+}
+
+// Both sides drive x to 0: no mode holds there, and steps across the jump have no end.
+TEST(EquationRuns, NameASwitchThatTurnsBackAndForth) {
+  const EquationFile file =
+      file_of({"x"}, {"der(x) = -sign(x)"}, "values = { x = 1 }\n[run]\nend = 2\n");
+  EquationRunRequest request;
+  request.integrator = "ida";
+  request.end = 2;
+  request.max_cpu_seconds = 0.2;
+  const EquationRun r = run_equations(file, equation_start(file), request);
+  EXPECT_FALSE(r.done);
+  EXPECT_NE(r.reason.find("from t = 1 on 'sign' of equation 1, 'der(x) = -sign(x)', turns back and "
+                          "forth"),
+            std::string::npos)
+      << r.reason;
 }
 
 TEST(EquationRuns, OfLargeSystemsTakeASparseMatrix) {

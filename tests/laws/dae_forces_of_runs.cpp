@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/measure/drive_power.h>
@@ -334,6 +335,28 @@ TEST(ForcesOfRuns, TheBalanceOfDrivesHasTheOrderOfTheMethod) {
   const double coarse = error(0.02), fine = error(0.01);
   EXPECT_GT(coarse / fine, 11) << coarse << " " << fine;
   EXPECT_LT(coarse / fine, 40) << coarse << " " << fine;
+}
+
+/// A force that takes the time has the digits of a double's time, and steps look for no more: as
+/// many as of the same force without it.
+TEST(ForcesOfRuns, OfTheTimeAskAReferenceForNoMoreThanTheTimeHas) {
+  const auto steps = [](const std::string& law) {
+    const Mechanism mechanism(
+        parse_scene("gravity = [0, -9.81, 0]\n[[body]]\nname = \"p\"\nmass = 1\n"
+                    "shape = { kind = \"rod\", length = 1 }\n[[joint]]\nname = \"J\"\n"
+                    "kind = \"revolute\"\nchild = \"p\"\nposition = 0.3\n[[force]]\n"
+                    "kind = \"torque\"\njoint = \"J\"\nlaw = \"" +
+                    law + "\"\n"));
+    long count = 0;
+    const OwnReference own =
+        own_reference(mechanism, assemble(mechanism).start, 0.5, 2, [&](double) {
+          ++count;
+          return true;
+        });
+    EXPECT_LT(own.accuracy, 1e-11) << law;
+    return count;
+  };
+  EXPECT_LE(steps("0.8*t"), steps("0.8*q"));
 }
 
 /// λ of the reference in quadruple precision against λ of (3) in doubles at the same state, and

@@ -1,11 +1,14 @@
 // Gradients of runs: against differences of the same runs, against runs in quadruple precision, and
-// against closed formulas.
+// against closed formulas; by numbers of tables, formulas, laws, stops, dead bands and friction.
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/file_text.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
+#include <complex>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 
@@ -390,6 +393,238 @@ TEST(Gradient, HasNoneFromASingularStart) {
                     asked("energy", {"gravity.1"}, "momentum", "reset"))
                 .find("become dependent"),
             std::string::npos);
+}
+
+GradientRequest adaptive(const std::string& of, const std::vector<std::string>& by,
+                         const std::string& form, double end, const std::string& method = "dop853",
+                         double rtol = 1e-11) {
+  GradientRequest request = equations::asked(of, by, form, "", end, 0);
+  request.settings.integrator = method;
+  request.settings.rtol = request.settings.atol = rtol;
+  request.settings.baumgarte_alpha = request.settings.baumgarte_beta = 0;
+  return request;
+}
+
+/// dJ/dθ by differences of runs, of the second order.
+double by_runs(const SceneText& scene, GradientRequest request, const std::string& by, double value,
+               double h) {
+  request.by = {by};
+  const auto at = [&](double k) {
+    SceneText other = scene;
+    other.fixed.push_back({by, value + k * h});
+    return gradient(other, request).value;
+  };
+  return (at(1) - at(-1)) / (2 * h);
+}
+
+/// Every derivative against differences of runs of h parts of the number.
+void expect_runs(const std::string& text, const GradientRequest& request, double h, double within) {
+  const SceneText scene = of_text(text);
+  const GradientResult r = gradient(scene, request);
+  for (std::size_t j = 0; j < r.variables.size(); ++j) {
+    const RunVariable& v = r.variables[j];
+    const double expected = by_runs(scene, request, v.name, v.value, h * v.size);
+    EXPECT_GT(std::abs(expected), 0) << v.name;
+    EXPECT_NEAR(r.gradient[static_cast<Eigen::Index>(j)], expected, within * std::abs(expected))
+        << request.settings.form << ", " << request.settings.integrator << ", by " << v.name;
+  }
+}
+
+const std::string slide = R"toml(
+[[body]]
+name = "m"
+mass = 1
+inertia = 1
+[[joint]]
+name = "X"
+kind = "prismatic"
+child = "m"
+axis = "x"
+)toml";
+
+/// x" + c x' + k x = F sin ωt from rest: with A = F/(k − ω² + icω), x = Im(A e^{iωt}) and what
+/// dies.
+TEST(Gradient, ByAFrequencyHasItsDigitsHoweverOftenItTurns) {
+  const SceneText scene = of_text("[parameters]\nw = 30\nF = 40\n" + slide +
+                                  "stiffness = 400\ndamping = 1\n[[force]]\nkind = \"torque\"\n"
+                                  "joint = \"X\"\nlaw = \"F*sin(w*t)\"\n");
+  using Complex = std::complex<double>;
+  const double w = 30, c = 1, k = 400, end = 20;
+  const Complex i(0, 1), amplitude = 40.0 / (k - w * w + i * c * w),
+                         by_w = amplitude * amplitude * (2 * w - i * c) / 40.0,
+                         turned = std::exp(i * w * end);
+  const double own = std::sqrt(k - c * c / 4), dies = std::exp(-c * end / 2), b = -by_w.imag(),
+               a = (c / 2 * b - amplitude.real() - w * by_w.real()) / own,
+               expected = (by_w * turned + amplitude * i * end * turned).imag() +
+                          dies * (b * std::cos(own * end) + a * std::sin(own * end));
+  EXPECT_NEAR(expected, 1.596366, 1e-6);
+  for (const char* form : {"momentum", "acceleration"})
+    for (const GradientMode mode : {GradientMode::forward, GradientMode::adjoint}) {
+      GradientRequest request = adaptive("X.q", {"w"}, form, end);
+      request.mode = mode;
+      EXPECT_NEAR(gradient(scene, request).gradient[0], expected, 1e-8) << form;
+    }
+}
+
+/// A pendulum on a cart that a law moves.
+std::string on_a_cart(const std::string& drive) {
+  return "gravity = [0, -9.81, 0]\n" + drive + slide +
+         "[[body]]\nname = \"p\"\nmass = 1\nshape = { kind = \"rod\", length = 1 }\n"
+         "[[joint]]\nname = \"J\"\nkind = \"revolute\"\nparent = \"m\"\nchild = \"p\"\n"
+         "position = -1.2\n";
+}
+
+TEST(Gradient, ByNumbersOfLawsOfDrives) {
+  struct Row {
+    std::string drive;
+    std::vector<std::string> by;
+    double end;
+  };
+  const std::string begun = "[[drive]]\njoint = \"X\"\nkind = ";
+  for (const auto& [drive, by, end] : std::vector<Row>{
+           {"[parameters]\nt0 = 0.4\nT = 0.05\nto = 0.3\n" + begun +
+                "\"step\"\nto = \"to\"\nstart = \"t0\"\nduration = \"T\"\n",
+            {"t0", "T", "to"},
+            0.7},
+           {"[parameters]\nA = 0.1\nw = 9\nph = 0.4\n" + begun +
+                "\"harmonic\"\namplitude = \"A\"\nfrequency = \"w\"\nphase = \"ph\"\n",
+            {"A", "w", "ph"},
+            2.5},
+           {"[parameters]\nt0 = 0.4\nsharp = 200\n" + begun +
+                "\"formula\"\nlaw = \"0.15*(1 + sinh((t-t0)*sharp)/cosh((t-t0)*sharp))\"\n",
+            {"t0", "sharp"},
+            0.7},
+           {"[parameters]\nc = 0.2\n" + begun +
+                "\"polynomial\"\ncoefficients = [0, 0, \"c\", \"-c/2\"]\n",
+            {"c"},
+            0.7},
+           {"[parameters]\nlate = 0.4\nhigh = 0.2\n" + begun +
+                "\"table\"\ntimes = [0, 0.2, \"late\", 1]\nvalues = [0, \"high\", 0.1, 0]\n",
+            {"late", "high"},
+            0.7}})
+    for (const char* form : {"momentum", "acceleration"})
+      expect_runs(on_a_cart(drive), adaptive("J.q", by, form, end), 1e-4, 1e-5);
+}
+
+TEST(Gradient, ByNumbersOfStopsDeadBandsAndFriction) {
+  struct Row {
+    std::string text, of;
+    std::vector<std::string> by;
+    double end;
+  };
+  const auto falls = [](const std::string& parameters) {
+    return "gravity = [-9.81, 0, 0]\n[parameters]\n" + parameters + slide + "position = 1.2\n";
+  };
+  for (const auto& [text, of, by, end] : std::vector<Row>{
+           {falls("L = 1\nk = 1e4\nc = 3\nw = 0.001\n") +
+                "limits = [\"L\", 100.0]\nstop_stiffness = \"k\"\nstop_damping = \"c\"\n"
+                "stop_width = \"w\"\n",
+            "X.q",
+            {"L", "k", "c", "w"},
+            0.35},
+           {falls("L = 1\nk = 1e6\n") +
+                "[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"k*max(0, L - q)^2\"\n",
+            "X.q",
+            {"L", "k"},
+            0.35},
+           {falls("L = 1\nk = 1e4\n") +
+                "[[force]]\nkind = \"potential\"\nV = \"if(X.q < L, k/2*(L - X.q)^2, 0)\"\n",
+            "X.q",
+            {"L", "k"},
+            0.35},
+           {falls("band = 0.1\nk = 1e4\nrest = 0.9\n") +
+                "[[force]]\nkind = \"coordinate-spring\"\njoints = [\"X\"]\nratios = [1]\n"
+                "stiffness = \"k\"\nrest = \"rest\"\ndead_band = \"band\"\n",
+            "X.q",
+            {"band", "k", "rest"},
+            0.3},
+           {"[parameters]\nmu = 2\nv = 0.1\n" + slide +
+                "velocity = 1\nstiffness = 50\nfriction = \"mu\"\nfriction_rate = \"v\"\n",
+            "X.q",
+            {"mu", "v"},
+            1}})
+    for (const auto& [form, method] : std::vector<std::pair<std::string, std::string>>{
+             {"momentum", "dp5"}, {"momentum", "vern9"}, {"acceleration", "dop853"}})
+      expect_runs(text, adaptive(of, by, form, end, method), 3e-6, 1e-4);
+}
+
+/// A force that jumps where the motion passes, at a moment that moves with all that it is made of.
+TEST(Gradient, RefusesJumpsThatTheMotionPasses) {
+  const auto text = [](const std::string& law) {
+    return "[parameters]\nF = 1\n" + slide +
+           "velocity = 1\nstiffness = 9\n[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"" +
+           law + "\"\n";
+  };
+  for (const char* law : {"-F*sign(u)", "if(q > 0.2, F, -F)", "F*floor(5*X.q)"})
+    for (const char* form : {"momentum", "acceleration"}) try {
+        gradient(of_text(text(law)), adaptive("X.q", {"F"}, form, 1, "dop853", 1e-8));
+        ADD_FAILURE() << law;
+      } catch (const SceneError& e) {
+        EXPECT_NE(std::string(e.what()).find(" s the force by '"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find(" jumps from "), std::string::npos) << e.what();
+      }
+  for (const char* law : {"if(q > 0.2, -F*(q - 0.2), 0)", "-F*abs(q)", "if(t > 0.5, F, 0)"})
+    EXPECT_NO_THROW(
+        gradient(of_text(text(law)), adaptive("X.q", {"F"}, "momentum", 1, "dop853", 1e-8)))
+        << law;
+}
+
+/// A scene far from the origin, whose neighbours at a part of its places cannot be assembled.
+TEST(Gradient, OfPlacesFarAwayNeedsNoFarNeighbours) {
+  const auto text = [](double x0) {
+    const auto at = [&](double x) { return reading::digits(x0 + x); };
+    return "gravity = [0, -9.81, 0]\n[parameters]\nx0 = " + at(0) + "\nxc = " + at(1.3) +
+           "\n[[body]]\nname = \"crank\"\nmass = 1\nshape = { kind = \"rod\", length = 0.4 }\n"
+           "[[body]]\nname = \"coupler\"\nmass = 1\nshape = { kind = \"rod\", length = 1.2 }\n"
+           "[[body]]\nname = \"rocker\"\nmass = 1\nshape = { kind = \"rod\", length = 1 }\n"
+           "[[joint]]\nname = \"O\"\nkind = \"revolute\"\nchild = \"crank\"\n"
+           "origin = { parent = [\"x0\", 0, 0] }\nposition = 1\n"
+           "[[joint]]\nname = \"A\"\nkind = \"revolute\"\nparent = \"crank\"\nchild = \"coupler\"\n"
+           "origin = { parent = [0.4, 0, 0] }\nposition = -0.4175694067314675\n"
+           "[[joint]]\nname = \"C\"\nkind = \"revolute\"\nchild = \"rocker\"\n"
+           "origin = { parent = [\"xc\", 0, 0] }\nposition = 1.6526128646081344\n"
+           "[[loop]]\nname = \"B\"\nkind = \"revolute\"\nparent = \"coupler\"\nchild = \"rocker\"\n"
+           "origin = { parent = [1.2, 0, 0], child = [1, 0, 0] }\n"
+           "[[marker]]\nname = \"P\"\nbody = \"coupler\"\npoint = [0.55, 0.3, 0]\n"
+           "[assembly]\nhold = [\"O\"]\n";
+  };
+  for (const char* gauge : {"reset", "leak:3"}) {
+    GradientRequest request = equations::asked("P.y", {"xc", "x0"}, "momentum", gauge, 0.2, 0.01);
+    const Eigen::VectorXd near = gradient(of_text(text(0)), request).gradient,
+                          far = gradient(of_text(text(100)), request).gradient;
+    EXPECT_LT((far - near).norm(), 1e-8 * near.norm()) << gauge;
+  }
+}
+
+/// All parameters of the examples with bodies or a Lagrangian, over a short time.
+TEST(Gradient, ByEveryParameterOfTheExamplesIsThatOfRuns) {
+  const std::string folder = MOMENTA_SOURCE_DIR "/examples/";
+  for (const char* file : {"iftomm/diagonal_spring", "straight_line/chebyshev",
+                           "straight_line/scene", "balancing/scene", "path_synthesis/scene",
+                           "identification/scene", "lagrangian/double_pendulum",
+                           "lagrangian/car_axis", "formulas/motor", "formulas/magnets"}) {
+    std::string path = folder + file + ".toml";
+    if (!std::filesystem::exists(path)) path = folder + "suites/" + file + ".toml";
+    const SceneText scene = of_text(reading::text_of(path));
+    const Mechanism mechanism(scene.scene(), scene.options);
+    std::vector<std::string> by;
+    for (const ParameterSpec& p : mechanism.scene().parameters) by.push_back(p.name);
+    const std::string of = mechanism.coordinate_columns().back().name;
+    GradientRequest request =
+        equations::asked(of, by, "momentum", mechanism.m() > 0 ? "reset" : "", 0.02, 0.002);
+    const GradientResult r = gradient(scene, request);
+    double largest = 0;
+    for (Eigen::Index j = 0; j < r.gradient.size(); ++j)
+      largest = std::max(largest,
+                         std::abs(r.gradient[j]) * r.variables[static_cast<std::size_t>(j)].size);
+    EXPECT_GT(largest, 0) << file;
+    for (Eigen::Index j = 0; j < r.gradient.size(); ++j) {
+      const RunVariable& v = r.variables[static_cast<std::size_t>(j)];
+      EXPECT_NEAR(r.gradient[j] * v.size,
+                  by_runs(scene, request, v.name, v.value, 1e-3 * v.size) * v.size, 1e-7 * largest)
+          << file << " by " << v.name;
+    }
+  }
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct FourBar {
   bool folded = false;    ///< which of the two assemblies
   bool as_loop = false;   ///< cut at the driven joint
   bool pendulum = false;  ///< hangs from the coupler: a freedom the drive does not have
+  bool tail = false;      ///< three rods from the coupler to the ground: another loop, with one
 };
 
 double law_at(const DriveSpec& d, double t) {
@@ -121,6 +122,22 @@ Scene scene_of(const FourBar& x) {
     s.bodies.push_back(rod("bob"));
     s.joints.push_back(hinge("M", "b", "bob", {0.5 * x.b, 0, 0}, 0.3));
   }
+  if (x.tail) {
+    const char* before = "b";
+    for (const char* name : {"d", "e", "f"}) {
+      s.bodies.push_back(rod(name));
+      const bool first = before[0] == 'b';
+      s.joints.push_back(hinge(std::string("joint of ") + name, before, name,
+                               {first ? 0.5 * x.b : 1, 0, 0}, first ? 1 : -1));
+      before = name;
+    }
+    loop.name = "tail";
+    loop.parent = "ground";
+    loop.child = "f";
+    loop.origin_parent = {2, 1, 0};
+    loop.origin_child = {1, 0, 0};
+    s.loops.push_back(loop);
+  }
   return s;
 }
 
@@ -150,9 +167,10 @@ TEST(InfeasibleDrives, EveryFormSaysTheSameTime) {
   x.law = steady(0.5, 1);
   const double exact = std::acos((5 - 1.8 * 1.8) / 4) - 0.5;
   for (const bool as_loop : {false, true})
-    for (const bool pendulum : {false, true}) {
+    for (const int with : {0, 1, 2}) {
       x.as_loop = as_loop;
-      x.pendulum = pendulum;
+      x.pendulum = with == 1;
+      x.tail = with == 2;
       const Mechanism mechanism(scene_of(x));
       const auto expect = [&](const RunResult& r, const std::string& what) {
         EXPECT_EQ(r.status, "failed") << what;

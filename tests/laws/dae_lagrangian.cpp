@@ -333,12 +333,27 @@ TEST(Lagrangian, RefusesWhatIsNoMechanism) {
   expect_refused(x + "lagrangian = \"x.dot^4 + y.dot^2\"\n",
                  "typed.toml:3:14: lagrangian: its second derivative by 'x.dot' twice has 'x.dot' "
                  "in it, expected a formula quadratic in the rates");
+  expect_refused(x + "lagrangian = \"x.dot^2 + y.dot^2 + x.dot*sign(x.dot)\"\n",
+                 "typed.toml:3:14: lagrangian: its 'sign' turns with the rate 'x.dot', expected a "
+                 "formula that is smooth in the rates");
+  expect_refused(x + "kinetic = \"x.dot^2 + if(y.dot < x, 1, 2)*y.dot^2\"\n",
+                 "kinetic: its 'if' turns with the rate 'y.dot'");
+  expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2\"\nconstraints = [{ name = \"c\", equation "
+                     "= \"abs(x) + abs(y) - 1\" }]\n",
+                 "constraint 'c' has 'abs', where no second derivative may exist; expected a "
+                 "smooth formula");
+  EXPECT_NO_THROW(Mechanism(
+      typed(x + "lagrangian = \"abs(x)*x.dot^2 + y.dot^2 + x.dot^2 + sign(x)*x.dot\"\n")));
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2*sin(x.dot)\"\n",
                  "kinetic: its second derivative by 'x.dot' twice has 'x.dot' in it");
   expect_refused(
       x + "kinetic = \"x.dot^2\"\n",
       "coordinate 'y' has no inertia: its rate is not in the Lagrangian, and it is in no "
       "constraint; expected one of them");
+  expect_refused(
+      x + "lagrangian = \"0.5*x.dot^2 + x*y.dot - 0.5*y^2\"\n",
+      "coordinate 'y' has no inertia: the Lagrangian is linear in its rate, and it is in "
+      "no constraint; expected a Lagrangian quadratic in it, or a constraint");
   expect_refused(x + "kinetic = \"(x.dot + y.dot)^2\"\n", "' has no inertia, alone or with");
   expect_refused(x + "kinetic = \"x.dot^2 - y.dot^2\"\n", "coordinate 'y' has no inertia");
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2\"\npotential = \"log(x)\"\n",
@@ -385,6 +400,21 @@ TEST(Lagrangian, HoldsMasslessCoordinatesAndRedundantConstraints) {
     const RunResult found = run_form(mechanism, a.start, request);
     ASSERT_EQ(found.status, "done") << found.reason;
     EXPECT_NEAR(found.trajectory.rows.back()[1], expected.trajectory.rows.back()[1], 1e-5);
+    // Those that take rates from p alone say so.
+    for (const auto& [form, integrator] :
+         {std::pair("momentum-index3", "ida"), std::pair("momentum", "rattle")}) {
+      RunRequest other = request;
+      other.settings.form = form;
+      other.settings.integrator = integrator;
+      other.settings.gauge = "none";
+      other.settings.step = 0.01;
+      const RunResult refused = run_form(mechanism, a.start, other);
+      EXPECT_NE(refused.status, "done");
+      EXPECT_NE(refused.reason.find("takes rates from M u = p, and coordinate 'a' has no inertia "
+                                    "without the constraints; expected"),
+                std::string::npos)
+          << refused.reason;
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <numbers>
 
@@ -30,21 +31,23 @@ Scene posed(const Scene& scene, int pose) {
 
 struct Case {
   Scene scene;
-  double exact;  ///< first coordinate at the end
+  double exact;     ///< first coordinate at the end
+  double rate = 0;  ///< and its rate
 };
 /// θ of θ'' = −λ cos θ: the wanted motion of a row of N four-bars; by Nyström's method of order 5.
-Case row(int n) {
+Case row(int n, double angle = std::numbers::pi / 2, double rate = -1, double end = end_of_runs) {
   const long double lambda = 9.81L * 3 * (3 * n + 1) / (2 * (4 * n + 1)), h = 1e-3L;
-  long double x = std::numbers::pi / 2, v = -1;
+  long double x = angle, v = rate;
   const auto f = [&](long double at) { return -lambda * std::cos(at); };
-  for (int i = 0; i < 10000; ++i) {
+  for (int i = 0; i < std::lround(1000 * end); ++i) {
     const long double k1 = f(x), k2 = f(x + h * v / 5 + h * h * k1 / 50),
                       k3 = f(x + 2 * h * v / 3 + h * h * (-k1 / 27 + 7 * k2 / 27)),
                       k4 = f(x + h * v + h * h * (3 * k1 / 10 - 2 * k2 / 35 + 9 * k3 / 35));
     x += h * v + h * h * (14 * k1 + 100 * k2 + 54 * k3) / 336;
     v += h * (14 * k1 + 125 * k2 + 162 * k3 + 35 * k4) / 336;
   }
-  return {equations::row_of_four_bars(n, std::numbers::pi / 2, -1), static_cast<double>(x)};
+  return {equations::row_of_four_bars(n, angle, rate), static_cast<double>(x),
+          static_cast<double>(v)};
 }
 Case bifurcation() {
   return {example("slider_crank"), 20.4724231148819971};  // the last line of its reference.csv
@@ -163,6 +166,41 @@ TEST(SingularEverywhere, ImplicitMethodsRestartAsAnOde) {
         judge(form, method, {1e-4, 1e-6, 1e-8, 1e-10}, true);
     for (const char* method : {"ida", "hem5"})
       judge("acceleration-index2", method, {1e-6, 1e-8}, false);
+  }
+}
+
+// A start at the pose leaves the branch to its rates, which Φ = 0 does not see there.
+TEST(SingularEverywhere, StartsAtThePose) {
+  constexpr double end = 0.4;
+  for (const int n : {1, 2}) {
+    const Case c = row(n, 0, 3, end);
+    for (const int pose : {0, 2}) {
+      const Mechanism mechanism(posed(c.scene, pose));
+      for (const std::string& form : form_names()) {
+        if (!is_dae_form(form)) continue;
+        RunRequest request;
+        request.settings.form = form;
+        request.settings.integrator = "ida";
+        request.settings.gauge = "leak:3";
+        request.settings.end_time = end;
+        request.settings.samples = 40;
+        request.keep_trajectory = true;
+        const RunResult r = run_form(mechanism, equations::start_of(mechanism), request);
+        ASSERT_EQ(r.status, "done") << form << ": " << r.reason;
+        EXPECT_TRUE(reliable(r)) << form << ": " << r.departure;
+        const auto& columns = r.trajectory.columns;
+        for (int i = 0; i <= n; ++i) {
+          const auto at = [&](const char* what) {
+            const auto column =
+                std::find(columns.begin(), columns.end(), "O" + std::to_string(i) + what) -
+                columns.begin();
+            return r.trajectory.rows.back().at(static_cast<std::size_t>(column));
+          };
+          EXPECT_NEAR(at(".q [rad]"), c.exact, 1e-4) << form << ", N = " << n << ", pose " << pose;
+          EXPECT_NEAR(at(".u [rad/s]"), c.rate, 1e-3) << form << ", N = " << n << ", pose " << pose;
+        }
+      }
+    }
   }
 }
 

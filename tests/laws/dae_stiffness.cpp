@@ -163,5 +163,43 @@ TEST(Stiffness, NothingChangesWhereAMethodWithMemoryIsOutOfPlace) {
   EXPECT_FALSE(changed(run_of(finger(0.1), "momentum", "")));
 }
 
+/// Two rods in line from a base to a pin on the ground; the base slides both ways against dampers
+/// that all but hold it. The loops are next to a singular pose, and the fast modes are the base's.
+TEST(Stiffness, IsNoticedNextToASingularPose) {
+  Scene s;
+  s.name = "braked base";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {rod("carriage"), rod("base"), rod("arm"), rod("fore")};
+  s.bodies[1].mass = 64;
+  s.joints = {hinge("x", "ground", "carriage", {0, 0, 0}, 0),
+              hinge("y", "carriage", "base", {0, 0, 0}, 0),
+              hinge("shoulder", "base", "arm", {0, 0.4, 0}, 0),
+              hinge("elbow", "arm", "fore", {1, 0, 0}, 0)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.joints[i].kind = JointKind::prismatic;
+    s.joints[i].axis = Eigen::Vector3d::Unit(static_cast<int>(i));
+    s.joints[i].damping = 1e11;
+  }
+  LoopSpec pin;
+  pin.name = "pin";
+  pin.kind = LoopKind::point;
+  pin.parent = "ground";
+  pin.child = "fore";
+  pin.origin_parent = {2, 0.4, 0};
+  pin.origin_child = {1, 0, 0};
+  s.loops = {pin};
+  const Mechanism mechanism(s);
+  for (const char* gauge : {"leak", "reset", "none"}) {
+    RunRequest request;
+    request.settings = default_settings(s.run, "momentum", "", 1e-8);
+    request.settings.gauge = gauge;
+    request.settings.end_time = 1e-6;
+    const RunResult run = run_form(mechanism, start_of(mechanism), request);
+    EXPECT_EQ(run.status, "done") << gauge << run.reason;
+    EXPECT_LT(run.stiff_from, 1e-6) << gauge;
+    EXPECT_EQ(changed(run), std::string(gauge) != "reset") << gauge;
+  }
+}
+
 }  // namespace
 }  // namespace momenta::dae_stiffness

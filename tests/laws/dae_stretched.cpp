@@ -52,6 +52,11 @@ TEST_P(Stretched, ClosesOrIsTooShort) {
           ++closed;
         } catch (const SceneError& error) {
           const std::string what = error.what();
+          if (what.find("cannot move at its start: ") != std::string::npos) {
+            EXPECT_LT(std::abs(short_by), 3 * least) << what;  // closed, and straight
+            ++closed;
+            continue;
+          }
           EXPECT_GT(short_by, least) << what;
           EXPECT_NE(what.find("loop 'tip' stays open by "), std::string::npos) << what;
           EXPECT_NE(what.find(", stretched: no motion closes it further"), std::string::npos)

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/expression/expression.h>
+#include <momenta/core/expression/switches.h>
 
 #include <cmath>
 #include <functional>
@@ -290,6 +291,35 @@ TEST(Expression, BoundsHowDeepAndHowLongItIs) {
   for (int i = 0; i < 2000; ++i) powers += "^a", sum += "+a";
   EXPECT_THROW(Expression(powers, names), ExpressionError);
   EXPECT_NEAR(value(sum), 2001 * a, 1e-9);
+}
+
+// With its switches held where they are a formula is what it was; each turns where its mode ends.
+TEST(Expression, HoldsItsSwitches) {
+  const std::vector<std::string> xy{"x", "y"};
+  for (const char* text :
+       {"if(x < y and not y <= 0.5, x^2, 3*y)", "abs(x - y) + sign(x)*y", "floor(3*x) + floor(y)",
+        "min(x, y)*max(x, 2*y)", "if(abs(x) > max(y, 0.2), sign(y), floor(x/y))"}) {
+    const Expression formula(text, xy);
+    Switches switches(2);
+    const Expression held = switches.held(formula);
+    EXPECT_EQ(held.corner() == "" || held.corner() == "if", true) << text;
+    for (const double x : {-0.9, 0.3, 1.7})
+      for (const double y : {-1.2, 0.4, 0.8}) {
+        std::vector<double> all{x, y};
+        for (std::size_t k = 0; k < switches.size(); ++k) {
+          const double argument = switches.argument(k)(all);
+          all.push_back(switches.mode(k, argument));
+          EXPECT_GT(switches.margin(k, all.back(), argument), 0) << text;
+        }
+        EXPECT_EQ(held(all), formula(std::vector<double>{x, y})) << text;
+      }
+  }
+  Switches switches(2);
+  switches.held(Expression("floor(x)", xy));
+  EXPECT_EQ(switches.name(0), "floor");
+  EXPECT_EQ(switches.turned(0, 2, 3), 3);
+  EXPECT_EQ(switches.turned(0, 2, 2), 1);
+  EXPECT_LT(switches.margin(0, 2, 3.1), 0);
 }
 
 /// Any characters: a formula or one sentence, and no more.

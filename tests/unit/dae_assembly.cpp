@@ -124,7 +124,7 @@ VectorXd slightly_open(const Mechanism& mechanism, const VectorXd& at) {
   const int rank = rank_and_idle(a).rank;
   EXPECT_LT(rank, mechanism.m());
   const LoopUnits units(mechanism);
-  const VectorXd step = 0.8 * left_by_files / svd.singularValues()[rank - 1] *
+  const VectorXd step = 0.8e-8 / svd.singularValues()[rank - 1] *
                         svd.matrixV().col(rank - 1).cwiseProduct(units.rates);
   VectorXd phi(mechanism.m());
   const VectorXd q = at + step;
@@ -201,6 +201,56 @@ TEST(Assembly, SmallGapsOfContradictingLoopsEndAtTheLeastSquares) {
       EXPECT_LT((found - least).norm(), 1e-11);
       EXPECT_LT((a.start.residue - found.cwiseProduct(units.equations)).norm(), 1e-15);
     }
+}
+
+/// Bars of a plane, their last pin d lengths out of it: whatever d, as little as six digits leave,
+/// the pose is that in the plane, and it is told.
+TEST(Assembly, LoopsALittleOutOfTheirPlaneCloseInIt) {
+  for (const double size : {1.0, 1e-3, 40.0})
+    for (const double off : {0.0, 3e-10, 6e-9, 2e-8, 4e-7, 4e-6}) {
+      SCOPED_TRACE(testing::Message() << size << ", " << off);
+      Scene scene = example("four_bar");
+      for (BodySpec& b : scene.bodies) b.com *= size, b.inertia *= size * size;
+      for (JointSpec& j : scene.joints) j.origin_parent *= size;
+      LoopSpec& loop = scene.loops.front();
+      loop.origin_parent *= size;
+      loop.origin_child *= size;
+      loop.kind = LoopKind::point;
+      const Mechanism flat(scene, {.algebra = Algebra::spatial});
+      const double length = length_of(scene);
+      loop.origin_child[2] += off * length;
+      const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+      if (off > 1e-6) {
+        EXPECT_THROW(assemble(mechanism), SceneError);
+        continue;
+      }
+      const Assembly a = assemble(mechanism), plane = assemble(flat);
+      EXPECT_LT((a.start.q - plane.start.q).norm(), 1e-11);
+      EXPECT_EQ(a.rank, plane.rank);
+      EXPECT_LT((a.start.udot - plane.start.udot).norm(), 1e-5 * plane.start.udot.norm());
+      EXPECT_EQ(a.residue.empty(), off == 0);
+      EXPECT_NEAR(a.position_residual, off * length, 1e-11 * length);
+    }
+}
+
+/// A planar scene whose loop has one side a little higher is closed in space; a higher one is
+/// refused.
+TEST(Assembly, SidesOfALoopALittleApartAcrossThePlaneCloseInSpace) {
+  for (const double off : {5e-10, 7e-9, 5e-7, 1e-4}) {
+    Scene scene = example("four_bar");
+    const Assembly plane = assemble(Mechanism(scene));
+    scene.loops.front().origin_child[2] += off;
+    if (off > 1e-5) {
+      EXPECT_THROW(Mechanism{scene}, SceneError);
+      continue;
+    }
+    const Mechanism mechanism(scene);
+    EXPECT_EQ(mechanism.plan().planar, off < 1e-9);
+    const Assembly a = assemble(mechanism);
+    EXPECT_EQ(a.residue.empty(), off < 1e-9);
+    EXPECT_EQ(a.mobility, 1);
+    EXPECT_LT((a.start.q - plane.start.q).norm(), 1e-9);
+  }
 }
 
 TEST(Assembly, SingularPoseIsSeen) {

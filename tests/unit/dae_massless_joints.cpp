@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/study/run_form.h>
@@ -22,6 +23,7 @@ namespace momenta::dae_massless_joints {
 namespace {
 
 using namespace equations;
+using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -211,8 +213,96 @@ TEST(MasslessJoints, WhatOthersMoveAloneIsNoInertia) {
   EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
   EXPECT_EQ(chain.failure(),
             "joint 'inner' has no inertia: body 'inner link' has none about its axis that the "
-            "joints it carries do not move alone; expected a mass, a rotor's inertia, or a fixed "
-            "joint");
+            "joints it carries do not move alone, as at rates 1 of joint 'inner', -1 of joint "
+            "'outer' no mass moves; expected a mass, a rotor's inertia, or a fixed joint");
+}
+
+Scene rod_about(const Vector3d& axis, JointKind kind) {
+  Scene scene = arm();
+  add_finger(scene, "spin", "arm", axis.normalized(), kind);
+  scene.bodies.back().mass = 1;
+  const Vector3d along = axis.normalized();
+  scene.bodies.back().inertia = (Matrix3d::Identity() - along * along.transpose()) / 12;
+  return scene;
+}
+
+/// Rounding leaves of a thin rod's inertia about itself 10⁻¹⁷, above zero about some axes and below
+/// about others.
+TEST(MasslessJoints, AThinRodIsTakenForOneAboutAnyAxis) {
+  RandomTree random(5);
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    const Vector3d axis =
+        i == 0   ? Vector3d(1, 2, 2)
+        : i == 1 ? Vector3d(1, 1, 1)
+        : i == 2 ? Vector3d(1, 0, 0)
+                 : Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1));
+    EXPECT_EQ(refusal(rod_about(axis, JointKind::revolute)),
+              "scene: the mechanism cannot move at its start: joint 'spin' has no inertia: body "
+              "'spin link' and what it carries have none about its axis; expected a mass, a "
+              "rotor's inertia, or a fixed joint");
+    EXPECT_NE(refusal(rod_about(axis, JointKind::spherical)).find("joint 'spin' has no inertia"),
+              std::string::npos);
+    Scene loops = four_bar();  // beside loops, by every matrix
+    const Scene rod = rod_about(axis, JointKind::revolute);
+    loops.bodies.push_back(rod.bodies.back());
+    loops.joints.push_back(rod.joints.back());
+    loops.joints.back().parent = "ground";
+    EXPECT_NE(refusal(loops).find("joint 'spin' has no inertia"), std::string::npos);
+    Scene thick = rod_about(axis, JointKind::revolute);
+    thick.bodies.back().inertia += 1e-12 * Matrix3d::Identity();
+    EXPECT_EQ(refusal(thick), "");
+    const Mechanism mechanism(rod_about(axis, JointKind::revolute));
+    const StateValues s = evaluate_state(mechanism, at_start(mechanism));
+    EXPECT_NE(s.not_there.find("joint 'spin' has no inertia"), std::string::npos);
+    EXPECT_TRUE(std::isnan(s.free[1]));
+    EXPECT_TRUE(std::isfinite(s.free[0]));
+  }
+}
+
+/// Three hinges through a point carry a point mass: the turn about the line to it moves nothing.
+TEST(MasslessJoints, TheWeakestDirectionIsNamed) {
+  RandomTree random(7);
+  const auto draw = [&] {
+    return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1))
+        .normalized();
+  };
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    Scene scene = arm();
+    for (const char* name : {"pitch", "roll", "yaw"}) {
+      add_finger(scene, name, scene.bodies.back().name, draw());
+      if (scene.joints.size() > 2) scene.joints.back().origin_parent.setZero();
+      scene.joints.back().position = {random.uniform(-1, 1)};
+    }
+    scene.bodies.back().mass = 1.337;
+    scene.bodies.back().com = random.uniform(0.1, 2) * draw();
+    const std::string sentence = refusal(scene);
+    EXPECT_NE(sentence.find("joint 'pitch' has no inertia: body 'pitch link' has none about its "
+                            "axis that the joints it carries do not move alone, as at rates "),
+              std::string::npos)
+        << sentence;
+    for (const char* name : {" of joint 'pitch'", " of joint 'roll'", " of joint 'yaw'"})
+      EXPECT_NE(sentence.find(name), std::string::npos) << sentence;
+    const Mechanism mechanism(scene);
+    const auto e = mechanism.evaluation<double>();
+    const UnheldJoints found = unheld_by_rounding(mechanism, *e, 0, mechanism.tree().q0.data());
+    ASSERT_EQ(found.motions.cols(), 1);
+    EXPECT_LT((dense_mass(mechanism, *e) * found.motions).norm(), 1e-12 * found.motions.norm());
+    scene.bodies.back().inertia = 1e-6 * Matrix3d::Identity();
+    EXPECT_EQ(refusal(scene), "");
+  }
+}
+
+TEST(MasslessJoints, FormulasToo) {
+  const auto told = [](const std::string& kinetic) {
+    return refusal(
+        parse_scene("[lagrangian]\ncoordinates = [\"x\", \"y\"]\nkinetic = \"" + kinetic + "\"\n"));
+  };
+  for (const char* kinetic :
+       {"(0.1*x.dot + 0.3*y.dot)^2", "(x.dot/3 - y.dot/7)^2", "(0.7*x.dot + 1.1*y.dot)^2"})
+    EXPECT_NE(told(kinetic).find("' has no inertia, alone or with"), std::string::npos) << kinetic;
+  EXPECT_EQ(told("(0.1*x.dot + 0.3*y.dot)^2 + 1e-9*x.dot^2"), "");
 }
 
 TEST(MasslessJoints, LoopsElsewhereDoNotHideThem) {

@@ -169,6 +169,19 @@ TEST(Conclusion, ManagesOneRunAndNoLoops) {
             "After 1000 s the position drift of `momentum` is 1 µm.");
 }
 
+TEST(Conclusion, DoesNotCompareRounding) {
+  auto a = run("acceleration", 3.2e-13, not_measured, 0.5),
+       m = run("momentum", 3.6e-13, not_measured, 0.5);
+  EXPECT_TRUE(contains(conclusion(study({a, m})), "worse"));
+  a.drift_rounding = m.drift_rounding = 4e-13;
+  const auto text = conclusion(study({a, m}));
+  EXPECT_TRUE(contains(text,
+                       "`acceleration` is at rounding level (3.2e-13 m); `momentum` stays at "
+                       "rounding level (3.6e-13 m)"))
+      << text;
+  EXPECT_FALSE(contains(text, "worse")) << text;
+}
+
 TEST(Conclusion, CountsEvaluationsWhereNoTimeWasTaken) {
   auto a = run("acceleration", 0.27, 1.98, not_measured),
        m = run("momentum", 3.5e-6, 1.01, not_measured);

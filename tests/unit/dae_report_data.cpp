@@ -34,7 +34,8 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "undetermined", "passages",       "changed_to",    "changed_at",
                  "rank",         "dependent_rows", "residue",       "weak_evaluations",
                  "stiffness",    "integrated",     "passed_limits", "multiplier_difference_max",
-                 "events",       "event_remarks",  "stops",         "reaction_errors"};
+                 "events",       "event_remarks",  "stops",         "reaction_errors",
+                 "departure"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),
@@ -45,12 +46,19 @@ TEST(SummaryJson, HasThePublicKeys) {
             (Names{"angle_between_steps_max", "angle_exponent", "angle_max", "angle_rate_exponent",
                    "angle_rate_max", "between_steps_max", "position_exponent", "position_max",
                    "unit", "velocity_exponent", "velocity_max"}));
-  EXPECT_EQ(keys(json["energy"]), (Names{"error_max"}));
+  EXPECT_EQ(keys(json["energy"]), (Names{"error_max", "turned_over"}));
   EXPECT_EQ(keys(json["error"]),
             (Names{"effort_max", "force_max", "impulse_max", "momentum_max", "multiplier_max",
                    "position_max", "reaction_max", "velocity_max", "work_max"}));
   EXPECT_EQ(json["environment"]["versions"]["SUNDIALS"], "6.4.1");
   EXPECT_EQ(json["counters"]["steps"], 43000);
+}
+
+TEST(SummaryJson, HasExponentsOfPowersAlone) {
+  RunResult run = synthetic::run_of({});
+  EXPECT_FALSE(summary_json(run, {})["drift"]["position_exponent"].is_null());
+  run.position_growth.half_range = 5.3;
+  EXPECT_TRUE(summary_json(run, {})["drift"]["position_exponent"].is_null());
 }
 
 TEST(SummaryJson, NotMeasuredIsNull) {

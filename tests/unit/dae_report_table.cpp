@@ -104,6 +104,22 @@ TEST(DriftTable, HasARowPerRunWithinTheTerminal) {
       std::string::npos);
 }
 
+TEST(DriftTable, HasNoExponentWhereThereIsNoPower) {
+  RunResult run = synthetic::run_of({});
+  run.position_growth = {3.03, 5.30, 1, 10};
+  const std::string table = drift_table(synthetic::study_of({run}));
+  EXPECT_NE(table.find("no power"), std::string::npos) << table;
+  EXPECT_EQ(table.find("3.03"), std::string::npos) << table;
+}
+
+TEST(DriftTable, TellsWhatIsNotToBeReliedOn) {
+  RunResult run = synthetic::run_of({});
+  run.departure = "the balance is off";
+  const std::string table = drift_table(synthetic::study_of({run}));
+  EXPECT_NE(table.find("momentum is not to be relied on: the balance is off\n"), std::string::npos)
+      << table;
+}
+
 TEST(DriftTable, PrintsADashWhereNothingWasMeasured) {
   RunResult run;
   run.settings.form = "acceleration";

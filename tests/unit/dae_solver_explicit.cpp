@@ -493,6 +493,21 @@ TEST(Explicit, SumsOfManyStepsLoseNothing) {
   EXPECT_NEAR(run.y[0], 1.0 / 3 + 1e4, 4e-12);
 }
 
+// Sliding along a jump: steps are as short as the error of crossing it, for ever.
+TEST(ExplicitRuns, EndWhereTheLimitOfStepsIsNearerThanTheEnd) {
+  Given relay(1, [](double, const double* y, double* f) {
+    f[0] = 1e6 * (y[0] > 0 ? -1.0 : 1.0);
+    return true;
+  });
+  const IntegrationResult run =
+      integrate_explicit("dop853", relay, 0, {1}, {1}, tolerance(1e-10), {});
+  EXPECT_FALSE(run.done);
+  EXPECT_NE(run.reason.find("at that pace the limit of 50000000 steps is reached before the end"),
+            std::string::npos)
+      << run.reason;
+  EXPECT_LT(run.counters.steps + run.counters.rejected, 300'000);
+}
+
 }  // namespace
 
 }  // namespace momenta::dae_solver_explicit

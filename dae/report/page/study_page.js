@@ -2,9 +2,11 @@
 
 const numeric = (name, unit, get, best = true, digits = 2) =>
   ({ name, unit, get, best, text: (value) => number(value, digits) });
-const fixed = (name, get, best) => ({ name, get, best, text: (value) => (measured(value) ? value.toFixed(2) : "–") });
-const growth = (of) => [fixed("exponent of growth", (run) => of(run).exponent, true),
-  fixed("± half range", (run) => of(run).half_range, false)];
+/** None is best: a drift that grows slowly may be large. */
+const fixed = (name, get) => ({ name, get, best: false, text: (value) =>
+  (typeof value === "string" ? value : measured(value) ? value.toFixed(2).replace(/^-(0\.00)$/, "$1") : "–") });
+const growth = (of) => [fixed("exponent of growth", (run) => (of(run).power ? of(run).exponent : "no power")),
+  fixed("± half range", (run) => of(run).half_range)];
 const counted = (name, get) => ({ name, get, best: true, optional: true, text: count });
 const optional = (column) => ({ ...column, optional: true });
 

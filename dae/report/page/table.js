@@ -16,15 +16,18 @@ const settingColumns = [
   { name: "partitions", get: (run) => (run.partitions ? String(run.partitions) : ""), optional: true },
 ];
 
+const reliable = (run) => run.status === "done" && !run.departure;
+
 const statusColumn = {
   name: "status",
-  get: (run) => (run.status === "done" ? "done" : `${run.status}, ${number(run.stopped_at, 4)} s`),
-  failed: (run) => run.status !== "done",
+  get: (run) => (run.status !== "done" ? `${run.status}, ${number(run.stopped_at, 4)} s`
+    : run.departure ? "done, not to be relied on" : "done"),
+  failed: (run) => !reliable(run),
 };
 
 /**
  * A framed table of `shown` (indices of runs). A column has name, get(run); numbers also unit, text(value) and
- * best: true where small is good. Runs that did not finish are never best.
+ * best: true where small is good. Runs that did not finish or are not to be relied on are never best.
  */
 function runTable(title, shown, columns) {
   const all = [...columns, statusColumn, ...settingColumns].filter(
@@ -48,8 +51,8 @@ function runTable(title, shown, columns) {
   });
 
   const best = all.map((column) => {
-    if (!column.best) return null;
-    const values = shown.filter((i) => runs[i].status === "done").map((i) => column.get(runs[i])).filter(measured);
+    if (!column.best || study.ambiguous) return null;
+    const values = shown.filter((i) => reliable(runs[i])).map((i) => column.get(runs[i])).filter(measured);
     const least = Math.min(...values);
     return values.some((value) => value > least) ? least : null;  // where all are equal none is best
   });
@@ -59,7 +62,7 @@ function runTable(title, shown, columns) {
       const cell = element("td", {}, cellText(column, runs[i]));
       if (!column.text) cell.className = "text";
       if (column.failed?.(runs[i])) cell.classList.add("failed");
-      if (best[c] !== null && runs[i].status === "done" && column.get(runs[i]) === best[c]) {
+      if (best[c] !== null && reliable(runs[i]) && column.get(runs[i]) === best[c]) {
         cell.classList.add("best");
         cell.append(element("span", { class: "hidden" }, " (best)"));
       }

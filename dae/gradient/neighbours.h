@@ -1,0 +1,76 @@
+#pragma once
+// Mechanisms of neighbouring values of one number θ of a scene, θ + k h of sixth_order.h, at widths
+// h that become narrower where that is asked for: what rows, energies and places have of θ at one
+// state is a difference of what these have there.
+
+#include <momenta/core/scalar/sixth_order.h>
+#include <momenta/core/scene/drive.h>
+#include <momenta/dae/gradient/run_variable.h>
+#include <momenta/dae/mechanism.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace momenta {
+
+class Neighbours {
+ public:
+  /// Scenes at θ + k h, in the order of sixth_order::points. @throws SceneError
+  using Scenes = std::function<std::vector<Scene>(double h)>;
+  /// Of θ, of the mechanism `own`, which must outlive it; h: of the widest.
+  Neighbours(RunVariable variable, double h, Scenes scenes, const Mechanism& own,
+             MechanismOptions options);
+
+  double h() const { return h_; }  ///< of the widest width that there is
+  /// The scenes of the i-th width that is the widest at which there are some. @throws SceneError
+  const std::vector<Scene>& scenes();
+  /// Those of this width, until its mechanisms are made.
+  const std::vector<Scene>& scenes(double h) { return width(h).scenes; }
+  /// Makes the mechanisms of the widest width at which there are some. @throws SceneError where
+  /// there is none, or it has other coordinates or equations
+  void make();
+  const Mechanism& mechanism(std::size_t point, double h) { return *at(h).mechanisms[point]; }
+
+  /// ∂/∂θ of f(evaluation, numbers), which fills numbers of this size at one state. Counts how far
+  /// differences of fourth order are from it. Cost: six plain evaluations, of each width that the
+  /// state asks for
+  template <class F>
+  const Eigen::VectorXd& slope(Eigen::Index size, F&& f) {
+    plain_.resize(size);
+    take(sixth_order::slope_of(h_, sixth_order::exact, [&](std::size_t i, double h) {
+      f(*at(h).evaluations[i], plain_);
+      return plain_;
+    }));
+    return slope_;
+  }
+  /// The same of f, ḟ of a law of the tree's drives at t.
+  const Eigen::VectorXd& law_slope(std::size_t drive, double t);
+
+  /// Digits to which differences of both orders agree, of all that was taken; 16: nothing was.
+  double digits() const;
+
+ private:
+  struct Width {
+    std::vector<Scene> scenes;
+    std::vector<std::unique_ptr<Mechanism>> mechanisms;
+    std::vector<std::unique_ptr<Evaluation<double>>> evaluations;
+    std::vector<std::vector<MotionLaw>> laws;
+  };
+  Width& width(double h);
+  Width& at(double h);
+  void take(sixth_order::Slope slope);
+
+  RunVariable variable_;
+  double h_;
+  Scenes scenes_;
+  const Mechanism& own_;
+  MechanismOptions options_;
+  std::array<Width, sixth_order::widths> widths_;
+  Eigen::VectorXd plain_, slope_;
+  double apart_ = 0, size_ = 0;  ///< sums
+};
+
+}  // namespace momenta

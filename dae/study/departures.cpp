@@ -1,0 +1,81 @@
+#include <momenta/dae/loop_word.h>
+#include <momenta/dae/study/departures.h>
+#include <momenta/dae/text/number_text.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+constexpr double tolerances = 10;  // that may add up in an energy of the state
+constexpr double way_at_rest = 1e-3;
+
+}  // namespace
+
+Departures::Departures(const Mechanism& mechanism, const RunSettings& settings, double span)
+    : mechanism_(mechanism), of_state_(tolerances * std::max(settings.rtol, settings.atol)) {
+  const Scene& scene = mechanism.scene();
+  const double length = length_of(scene);
+  double mass = 0;
+  for (const BodySpec& body : scene.bodies) mass += body.mass;
+  still_ = way_at_rest / span;
+  at_rest_ = mass * length * (of_state_ * scene.gravity.norm() + length * still_ * still_);
+}
+
+void Departures::look_at_energy(double t, double in_state, double turned_over, double off) {
+  largest_energy_ = std::max(largest_energy_, in_state);
+  const double scale = std::max(turned_over, floor());
+  beyond_told_.look(t, off > energy.told * scale);
+  beyond_apart_.look(t, off > energy.apart * scale);
+}
+
+void Departures::look_at_rates(double t, double opening, Eigen::Index row, double fastest) {
+  fastest_ = std::max(fastest_, fastest);
+  if (opening <= opening_) return;
+  opening_ = opening;
+  row_ = row;
+  at_ = t;
+}
+
+void Departures::judge(RunResult& run) const {
+  if (!finished(run)) return;
+  judge_energy(run);
+  if (finished(run) && mechanism_.m() > 0) judge_rates(run);
+}
+
+void Departures::judge_energy(RunResult& run) const {
+  const double scale = std::max(run.energy_turned_over, floor()), off = run.energy_error_max;
+  if (!(off > energy.told * scale)) return;
+  const bool apart = off > energy.apart * scale;
+  const double from = (apart ? beyond_apart_ : beyond_told_).from;
+  const std::string sentence =
+      "from t = " + compact(from, 6) + " s on the balance of energy is off by more than " +
+      (apart ? "a quarter" : "a twentieth") + " of the " + compact(scale, 3) +
+      " J turned over, by " + compact(off, 3) + " J at the most";
+  if (!apart) {
+    run.departure = sentence;
+    return;
+  }
+  run.status = "came apart";
+  run.reason = sentence;
+  run.stopped_at = from;
+}
+
+void Departures::judge_rates(RunResult& run) const {
+  const double share = opening_ / std::max(fastest_, still_);
+  if (!(share > rates.told)) return;
+  const std::string sentence = "at t = " + compact(at_, 6) + " s " + loop_word(mechanism_) + " '" +
+                               mechanism_.rows()[static_cast<std::size_t>(row_)].loop +
+                               "' opens at " + compact(share, 2) +
+                               " of the rate of the fastest joint, where it ought to stay closed";
+  if (share > rates.apart) {
+    run.status = "came apart";
+    run.reason = sentence;
+    run.stopped_at = at_;
+  } else if (run.departure.empty()) {
+    run.departure = sentence;
+  }
+}
+
+}  // namespace momenta

@@ -1,0 +1,64 @@
+#pragma once
+// How far a run left what holds along every motion of its mechanism while its loops stayed closed:
+//
+//   energy   |E(t) − E(0)|  over  max (T + |V − V(0)|) + ∫ Σ|P| dt,   the energy turned over, P of
+//            dampers, friction and formulas, of drives, and of impacts
+//   rates    |Φ̇|∞ over the fastest rate of a joint, both in the units of LoopUnits
+//
+// Beyond the shares `told` the run is done, and says so first; beyond `apart` what it did is no
+// motion of this mechanism, and it came apart. An energy below what the tolerance leaves of those
+// in the state is none, nor is a rate that moves a joint by less than a thousandth over the run.
+
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/solver/memory.h>
+#include <momenta/dae/study/run_result.h>
+
+#include <cmath>
+
+namespace momenta {
+
+class Departures {
+ public:
+  struct Share {
+    double told, apart;
+  };
+  static constexpr Share energy{0.05, 0.25}, rates{0.05, 0.25};
+
+  Departures(const Mechanism& mechanism, const RunSettings& settings, double span);
+
+  /// A sample at t: T + |V|, the energy turned over so far, and by how much the balance is off [J].
+  void look_at_energy(double t, double in_state, double turned_over, double off);
+  /// |Φ̇|∞ at a sample and its row, the fastest rate of a joint [1/s].
+  void look_at_rates(double t, double opening, Eigen::Index row, double fastest);
+  void carry(Memory& memory) {
+    memory(largest_energy_), memory(beyond_told_.from), memory(beyond_apart_.from);
+    memory(opening_), memory(row_), memory(at_), memory(fastest_);
+  }
+
+  /// The verdict on a run that reached its end: `departure`, or status and reason. @pre the maxima
+  /// of energy are in it
+  void judge(RunResult& run) const;
+
+ private:
+  /// When a share of what was turned over until then was first passed [s]; NaN: it was not.
+  struct Beyond {
+    double from = not_measured;
+    void look(double t, bool beyond) {
+      if (beyond && std::isnan(from)) from = t;
+    }
+  };
+  double floor() const { return at_rest_ + of_state_ * largest_energy_; }
+  void judge_energy(RunResult& run) const;
+  void judge_rates(RunResult& run) const;
+
+  const Mechanism& mechanism_;
+  double still_;    ///< a rate that is none [1/s]
+  double at_rest_;  ///< an energy that is none, but for those in the state [J]
+  double of_state_;
+  Beyond beyond_told_, beyond_apart_;
+  double largest_energy_ = 0;                  ///< T + |V| at the samples [J]
+  double opening_ = 0, at_ = 0, fastest_ = 0;  ///< largest |Φ̇|∞, and when
+  Eigen::Index row_ = 0;
+};
+
+}  // namespace momenta
