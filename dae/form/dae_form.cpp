@@ -200,6 +200,8 @@ void DaeForm::look_beside_start() {
     if (beside.weakest < near_pivot) return;
     d.always_faded = beside.faded;
     d.strongest = beside.weakest;
+    // Soft rows that nothing dampens swing at index 3. The start is left as an ODE.
+    if (beside.faded == 0) epsilon_.clear();
     return;
   }
 }
