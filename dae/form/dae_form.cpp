@@ -164,7 +164,7 @@ bool DaeForm::near_singular(double t, const double* y) {
     d.always_faded = layout_.m;
     for (auto* v : {&d.u, &d.udot}) v->resize(static_cast<std::size_t>(layout_.nv));
     for (auto* v : {&d.sigma, &d.lambda}) v->assign(static_cast<std::size_t>(layout_.m), 0.0);
-    if (!epsilon_.empty()) look_beside_start();
+    if (!epsilon_.empty() && mechanism_.leaves_first()) look_beside_start();
   }
   if (!find_pivots(t, y)) return false;
   const LoopSolver::Pivots pivots = d.solver->pivots();
@@ -180,9 +180,8 @@ bool DaeForm::find_pivots(double t, const double* q) {
   return d.solver->free_velocity(t, q, d.udot.data(), d.u.data());
 }
 
-/// A row that is redundant everywhere has no pivot beside the start either, or, a way δ off the
-/// loops' poses along a straight line, one of the order δ⁴; where the start is a singular pose it
-/// has one of the order δ².
+/// A row that is redundant everywhere has no pivot at a pose beside the start either; where the
+/// start is a singular pose it has one.
 void DaeForm::look_beside_start() {
   constexpr double aside = 0.2;  // [rad or lengths of the scene]
   OdeRestart& d = ode_restart_;
@@ -193,9 +192,11 @@ void DaeForm::look_beside_start() {
     const Eigen::VectorXd step = way * (aside / largest);
     Eigen::VectorXd q = start_.q, qdot(layout_.nq);
     plain_.e->coordinate_rates(q.data(), step.data(), qdot.data());
-    q += qdot;
-    mechanism_.tree().normalise(q);
-    if (!find_pivots(start_.t, q.data())) return;
+    Eigen::VectorXd state = Eigen::VectorXd::Zero(layout_.nq + layout_.nv);  // at rest
+    state.head(layout_.nq) = q + qdot;
+    bool changed = false;
+    if (!restart_form().after_step(start_.t, state.data(), changed)) return;  // closes the loops
+    if (!find_pivots(start_.t, state.data())) return;
     const LoopSolver::Pivots beside = d.solver->pivots();
     if (beside.weakest < near_pivot) return;
     d.always_faded = beside.faded;
@@ -206,14 +207,20 @@ void DaeForm::look_beside_start() {
   }
 }
 
-OdeSystem* DaeForm::ode_restart(double t, const double* y, double* state) {
-  OdeRestart& d = ode_restart_;
-  if (!d.form) {
+OdeForm& DaeForm::restart_form() {
+  std::unique_ptr<OdeForm>& form = ode_restart_.form;
+  if (!form) {
     FormOptions options = options_;
     options.project = true;
     options.gauge = momentum_like() ? gauge_ : Gauge{Gauge::Kind::reset, 0};
-    d.form = make_momentum(mechanism_, options, start_);
+    form = make_momentum(mechanism_, options, start_);
   }
+  return *form;
+}
+
+OdeSystem* DaeForm::ode_restart(double t, const double* y, double* state) {
+  OdeRestart& d = ode_restart_;
+  restart_form();
   std::copy_n(y, layout_.nq + layout_.nv, state);
   if (momentum_like()) {
     d.form->centre_on(y + layout_.s());

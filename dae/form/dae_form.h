@@ -131,6 +131,8 @@ class DaeForm : public Form, public DaeSystem {
   void find_redundancy(const Start& start);
   /// Pivots of the loops at a pose, in the solver of ode_restart_; false: there are none.
   bool find_pivots(double t, const double* q);
+  /// The motion as an ODE, on the loops' poses.
+  OdeForm& restart_form();
   /// Which rows have no pivot everywhere, where rows have none at the start.
   void look_beside_start();
   /// Dense, or a pattern and the columns that can share a direction.

@@ -2,7 +2,8 @@
 // How far a run left what holds along every motion of its mechanism while its loops stayed closed:
 //
 //   energy   |E(t) − E(0)|  over  max (T + |V − V(0)|) + ∫ Σ|P| dt,   the energy turned over, P of
-//            dampers, friction and formulas, of drives, and of impacts
+//            dampers, friction and formulas, of drives, and of impacts; V also in the middle of
+//            steps, with loops. Of a tree a few samples do not tell it, and judge no energy
 //   rates    |Φ̇|∞ over the fastest rate of a joint, both in the units of LoopUnits
 //
 // Beyond the shares `told` the run is done, and says so first; beyond `apart` what it did is no
@@ -26,17 +27,23 @@ class Departures {
 
   Departures(const Mechanism& mechanism, const RunSettings& settings, double span);
 
-  /// A sample at t: T + |V|, the energy turned over so far, and by how much the balance is off [J].
-  void look_at_energy(double t, double in_state, double turned_over, double off);
+  /// |V − V(0)| in the middle of a step [J].
+  void look_between(double exchanged) { exchanged_ = std::fmax(exchanged_, exchanged); }
+  /// A sample at t: T + |V|, T + |V − V(0)|, ∫ Σ|P| so far, and by how much the balance is off [J].
+  void look_at_energy(double t, double in_state, double exchanged, double flow, double off);
   /// |Φ̇|∞ at a sample and its row, the fastest rate of a joint [1/s].
   void look_at_rates(double t, double opening, Eigen::Index row, double fastest);
   void carry(Memory& memory) {
-    memory(largest_energy_), memory(beyond_told_.from), memory(beyond_apart_.from);
+    memory(largest_energy_), memory(exchanged_), memory(turned_over_);
+    memory(beyond_told_.from), memory(beyond_apart_.from);
     memory(opening_), memory(row_), memory(at_), memory(fastest_);
   }
 
-  /// The verdict on a run that reached its end: `departure`, or status and reason. @pre the maxima
-  /// of energy are in it
+  /// [J], up to the last sample.
+  double turned_over() const { return turned_over_; }
+
+  /// The verdict on a run that reached its end: `departure`, or status and reason. @pre the largest
+  /// error of energy is in it
   void judge(RunResult& run) const;
 
  private:
@@ -57,6 +64,7 @@ class Departures {
   double of_state_;
   Beyond beyond_told_, beyond_apart_;
   double largest_energy_ = 0;                  ///< T + |V| at the samples [J]
+  double exchanged_ = 0, turned_over_ = 0;     ///< largest T + |V − V(0)|; with ∫ Σ|P| [J]
   double opening_ = 0, at_ = 0, fastest_ = 0;  ///< largest |Φ̇|∞, and when
   Eigen::Index row_ = 0;
 };

@@ -142,7 +142,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
                cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
   RunMonitor monitor(mechanism, scene, made->form(), start, request, result, stops);
   const auto y0 = made->form().initial(begun);
-  if (!from) monitor.sample(start.t, y0.data(), nullptr);
+  const bool read = from || monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = stops ? nullptr : dynamic_cast<OdeForm*>(&made->form());
   std::vector<long> faded(static_cast<std::size_t>(integrated.m()));
   if (ode && integrated.m() > 0) {
@@ -227,7 +227,9 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   result.wall_s = wall_now() - wall_start;
   result.status =
       run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
-  result.reason = run.done ? "" : (monitor.trouble().empty() ? run.reason : monitor.trouble());
+  // A DAE that cannot be read at its start says why when it is started.
+  const bool by_method = monitor.trouble().empty() || (!read && made->form().is_dae());
+  result.reason = run.done ? "" : by_method ? run.reason : monitor.trouble();
   result.stopped_at = run.end_time;
   if (!run.done && !monitor.came_apart().empty()) {
     result.status = "came apart";

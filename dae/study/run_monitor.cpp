@@ -153,9 +153,8 @@ void RunMonitor::note(double t, const Measured& now) {
   const double exchanged = now.kinetic + std::abs(now.potential - potential_at_start_);
   if (!(now.kinetic <= result_.kinetic_energy_max)) result_.kinetic_energy_max = now.kinetic;
   if (!(exchanged <= result_.energy_scale)) result_.energy_scale = exchanged;
-  departures_.look_at_energy(t, std::abs(now.kinetic) + std::abs(now.potential),
-                             result_.energy_scale + work_.turned_over(),
-                             std::abs(now.energy - energy_at_start_));
+  departures_.look_at_energy(t, std::abs(now.kinetic) + std::abs(now.potential), exchanged,
+                             work_.turned_over(), std::abs(now.energy - energy_at_start_));
   if (apart_) {
     Eigen::Index row = 0;
     const double opening = apart_->gap(phi_, row);
@@ -229,7 +228,7 @@ void RunMonitor::finish() {
   };
   if (singular_crossings_) singular_crossings_->finish();
   result_.energy_error_max = largest(s.energy_error);
-  result_.energy_turned_over = result_.energy_scale + work_.turned_over();
+  if (!s.t.empty()) result_.energy_turned_over = departures_.turned_over();
   departures_.judge(result_);
   if (singular_crossings_ && now_.q.size() > 0)  // none where a run that goes on has no time left
     result_.last_pose = apart_->in_units(now_.q);

@@ -55,6 +55,7 @@ bool RunMonitor::look_at_middle(double t, const Interpolant& between) {
   between(t, state_.data());
   if (!read_coordinates(t)) return false;
   const Drift drift = position_drift(t, middle_);
+  departures_.look_between(std::abs(e_->potential(middle_.data()) - potential_at_start_));
   if (!(drift.lengths <= largest_between_.lengths)) largest_between_.lengths = drift.lengths;
   if (!(drift.angles <= largest_between_.angles)) largest_between_.angles = drift.angles;
   if (drift.finite()) came_apart_ = apart_->found(t, phi_, false);
