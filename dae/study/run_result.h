@@ -136,8 +136,9 @@ struct RunResult {
   std::string untimed;           ///< why repeats gave no times; one clause, empty: they did
   /// Unit of the position drift: m, or rad where all rows of Φ are angles; empty without loops.
   std::string drift_unit;
-  /// Drifts below these are rounding, or what the start left open.
-  double drift_rounding = rounding_level, angle_rounding = rounding_level;
+  /// Position drifts below are rounding, or what the start left open [drift_unit].
+  double drift_rounding = rounding_level;
+  double angle_rounding = rounding_level;  ///< likewise of angles [rad]
   /// Largest |Φ|₂ at the samples.
   double position_drift_max = not_measured;
   double velocity_drift_max = not_measured;  ///< largest |Φ̇|₂ there
@@ -155,7 +156,8 @@ struct RunResult {
   double kinetic_energy_max = not_measured;  ///< largest T at the samples [J], the scale of rates
   /// Largest T + |V − V(0)| at the samples [J]: energy errors compare to it.
   double energy_scale = not_measured;
-  /// That, and what went through dampers, friction, formulas, drives and impacts [J].
+  /// That, V in the middle of steps too, and what went through dampers, friction, formulas, drives
+  /// and impacts [J].
   double energy_turned_over = not_measured;
   /// Coordinates where it stopped, slides in lengths of the scene; empty where singular crossings
   /// are not looked for.
