@@ -30,6 +30,11 @@ double relative_error(const A& a, const B& b, double floor = 1) {
   return error / std::max(floor, static_cast<double>(b.cwiseAbs().maxCoeff()));
 }
 
+/// The larger of two errors. NaN stays, which std::max may drop.
+inline double larger(double a, double b) {
+  return std::isnan(a) || b <= a ? a : b;
+}
+
 /// An error over what rounding grows to on its way, where that leaves digits to judge by. A growth
 /// beyond `most`, or none that is a number, would let a wrong formula pass: ∞ then, so that the
 /// test fails that counts on such a state.

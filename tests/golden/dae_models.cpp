@@ -16,6 +16,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_models {
 namespace {
 
@@ -216,14 +218,16 @@ TEST_P(Models, MassMatrixBiasAndAccelerationsOfTheTree) {
     const VectorXd tau = vector(s.at("tau"));
     mass = std::max(
         mass, deviation(m.T.transpose() * x.mass * m.T, mass_matrix(s.at("M_lower"), tree.nv())));
-    bias = std::max(bias, deviation(m.T.transpose() * (x.mass * m.Tdot_v + x.bias) + tau,
-                                    vector(s.at("bias")), tau.cwiseAbs().maxCoeff()));
-    free = std::max(free, deviation(m.T.transpose() * (x.free - m.Tdot_v), vector(s.at("qdd"))));
+    bias = equations::larger(bias, deviation(m.T.transpose() * (x.mass * m.Tdot_v + x.bias) + tau,
+                                             vector(s.at("bias")), tau.cwiseAbs().maxCoeff()));
+    free = equations::larger(free,
+                             deviation(m.T.transpose() * (x.free - m.Tdot_v), vector(s.at("qdd"))));
     const double t = s.at("kinetic_energy"), v = s.at("potential_energy");
-    kinetic = std::max(kinetic, std::abs(x.kinetic - t) / std::max(1e-300, std::abs(t)));
+    kinetic = equations::larger(kinetic, std::abs(x.kinetic - t) / std::max(1e-300, std::abs(t)));
     if (&s == &reference.at("states")[0]) first_potential = x.potential - v;
-    potential = std::max(potential, std::abs(x.potential - v - first_potential) /
-                                        std::max({1.0, std::abs(v), std::abs(x.potential)}));
+    potential =
+        equations::larger(potential, std::abs(x.potential - v - first_potential) /
+                                         std::max({1.0, std::abs(v), std::abs(x.potential)}));
   }
   if (std::getenv("MOMENTA_MODELS"))
     std::printf("| %s/%s | %d | %.0e | %.0e | %.0e |\n",
@@ -246,10 +250,11 @@ TEST_P(Models, AccelerationsWithLoopsClosed) {
   for (const json& s : reference.at("constrained_states")) {
     const Pair::Map m = pair.state(mechanism, s);
     const StateValues x = evaluate_state(mechanism, m.given);
-    open = std::max(open, x.phi.cwiseAbs().maxCoeff());
-    speed = std::max(speed, x.phidot.cwiseAbs().maxCoeff());
-    constrained = std::max(constrained, deviation(m.T.transpose() * (x.constrained - m.Tdot_v),
-                                                  vector(s.at("qdd_constrained"))));
+    open = equations::larger(open, x.phi.cwiseAbs().maxCoeff());
+    speed = equations::larger(speed, x.phidot.cwiseAbs().maxCoeff());
+    constrained = equations::larger(
+        constrained,
+        deviation(m.T.transpose() * (x.constrained - m.Tdot_v), vector(s.at("qdd_constrained"))));
     // Next to a singular pose the last bit of q may move the answer by more: by 1e-9 in the delta
     // robot, whose singular values go down to 2e-5 of the largest.
     GivenState moved = m.given;

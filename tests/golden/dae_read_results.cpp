@@ -1,6 +1,7 @@
 // Results read back: run.h5 by the library of its format and by the snippets of the documentation,
 // where their interpreters are installed.
 
+#include "equations/tolerance.h"
 #include "golden/program.h"
 
 #ifdef MOMENTA_WITH_HDF5
@@ -58,7 +59,7 @@ class Results : public Program {
 /// 101 samples of the four-bar, its largest change of energy as the snippets print it.
 std::string expected_line(const std::vector<double>& energy) {
   double largest = 0;
-  for (const double e : energy) largest = std::max(largest, std::abs(e - energy.front()));
+  for (const double e : energy) largest = equations::larger(largest, std::abs(e - energy.front()));
   char text[120];
   std::snprintf(text, sizeof text, "largest change of energy %.3g J", largest);
   return text;

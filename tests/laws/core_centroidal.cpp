@@ -58,7 +58,7 @@ TEST(Centroidal, LinearMomentumIsTheRateOfTheFirstMoment) {
     const auto sums = centroidal_sums(w, D::variable(x.s.t, 0), q.data(), u.data());
     Vector3d rate;
     for (int i = 0; i < 3; ++i) rate[i] = sums.moment[i].b[0];
-    worst = std::max(worst, difference(all.linear_momentum, rate) / x.growth());
+    worst = equations::larger(worst, difference(all.linear_momentum, rate) / x.growth());
   }
   EXPECT_LT(worst, algebra_tol(12));
 }

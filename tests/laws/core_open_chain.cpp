@@ -104,8 +104,8 @@ TEST(Laws, EnergyRateIsPower) {
     chain.momenta(s.t, s.q, s.u, p);
     const double work = p.cwiseAbs().dot(udot.cwiseAbs());
     const double error = std::abs(kinetic.b[0] + potential.b[0] - power);
-    worst = std::max(worst, over_growth(error / std::max({1.0, size, work}),
-                                        condition(chain.mass_matrix(s.t, s.q))));
+    worst = equations::larger(worst, over_growth(error / std::max({1.0, size, work}),
+                                                 condition(chain.mass_matrix(s.t, s.q))));
   }
   EXPECT_LT(worst, algebra_tol(12));
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
@@ -133,7 +133,8 @@ TEST(Laws, InverseMassTimesIsTheInverse) {
       inverse.col(j) = column;
     }
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(tree.nv, tree.nv);
-    worst = std::max(worst, over_growth(relative_error(m * inverse, identity), condition(m)));
+    worst =
+        equations::larger(worst, over_growth(relative_error(m * inverse, identity), condition(m)));
     EXPECT_LT(over_growth(relative_error(inverse, inverse.transpose().eval()), condition(m)),
               algebra_tol(12));
   }
@@ -196,7 +197,9 @@ void hamiltonian_symmetry(bool flat) {
     poses_outward(plain, s.t, s.q.data(), false);
     mass_matrix_inward(plain, [&](int i, int j, double value) { m(i, j) = m(j, i) = value; });
     const double growth = condition(m);
-    const auto note = [&](double error) { worst = std::max(worst, over_growth(error, growth)); };
+    const auto note = [&](double error) {
+      worst = equations::larger(worst, over_growth(error, growth));
+    };
     note(relative_error(up, up.transpose().eval()));
     note(relative_error(up * m, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))));
     note(relative_error(pq, pq.transpose().eval()));
@@ -225,8 +228,8 @@ TEST(Laws, LagrangesEquations) {
     Eigen::VectorXd p(chain.nv()), qdot(chain.nv()), pdot(chain.nv());
     chain.momenta(s.t, s.q, s.u, p);
     ASSERT_TRUE(chain.rates(s.t, s.q, p, qdot, pdot));
-    worst = std::max(worst, over_growth(relative_error(pdot, expected.cast<double>()),
-                                        condition(chain.mass_matrix(s.t, s.q))));
+    worst = equations::larger(worst, over_growth(relative_error(pdot, expected.cast<double>()),
+                                                 condition(chain.mass_matrix(s.t, s.q))));
   }
   EXPECT_LT(worst, algebra_tol(6));
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
@@ -264,8 +267,8 @@ TEST(Laws, SpaceHasNoPreferredPlace) {
     ASSERT_TRUE(here.rates(s.t, s.q, p, qdot, pdot));
     ASSERT_TRUE(there.rates(s.t, s.q, p, qdot_there, pdot_there));
     const double growth = condition(here.mass_matrix(s.t, s.q));
-    worst = std::max(worst, over_growth(relative_error(qdot_there, qdot), growth));
-    worst = std::max(worst, over_growth(relative_error(pdot_there, pdot), growth));
+    worst = equations::larger(worst, over_growth(relative_error(qdot_there, qdot), growth));
+    worst = equations::larger(worst, over_growth(relative_error(pdot_there, pdot), growth));
     EXPECT_LT(relative_error(there.mass_matrix(s.t, s.q), here.mass_matrix(s.t, s.q)),
               algebra_tol(12));
   }

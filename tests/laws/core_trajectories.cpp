@@ -80,7 +80,7 @@ void same_motion(const TreeRecipe& recipe, bool flat, int steps, unsigned first,
     const double coarse = difference(steps), fine = difference(4 * steps);
     // below the rounding of some hundred steps there is no order left to see
     if (fine > 1e-12) least = std::min(least, order(coarse, fine));
-    worst = std::max(worst, fine);
+    worst = equations::larger(worst, fine);
   }
   EXPECT_GT(least, 3.5);
   EXPECT_LT(worst, promise_tol(end / (4 * steps), 4, 1e6));  // constant: the wildest tree
@@ -129,7 +129,7 @@ TEST(Trajectories, EnergyStays) {
     };
     const double coarse = error(256), fine = error(1024);
     if (fine > 1e-12) least = std::min(least, order(coarse, fine));
-    worst = std::max(worst, fine);
+    worst = equations::larger(worst, fine);
   }
   EXPECT_GT(least, 3.5);
   EXPECT_LT(worst, promise_tol(0.25 / 1024, 4, 1e6));  // constant: the wildest tree

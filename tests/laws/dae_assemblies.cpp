@@ -3,6 +3,7 @@
 
 #include "equations/assembled_linkages.h"
 #include "equations/decompositions.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 
@@ -155,7 +156,7 @@ struct PlanarPlatform {
         sum += left(phi) * std::polar(1.0, -k * phi) / static_cast<double>(n);
       }
       c.push_back(sum);
-      largest = std::max(largest, std::abs(sum));
+      largest = equations::larger(largest, std::abs(sum));
     }
     int degree = 7;
     while (std::abs(c[static_cast<std::size_t>(7 + degree)]) < 1e-10 * largest) --degree;
@@ -336,7 +337,8 @@ TEST(Assemblies, OfAStewartPlatformComeInMirrorImages) {
       const auto there = seats_of(other.q);
       double apart = 0;
       for (std::size_t i = 0; i < 6; ++i)
-        apart = std::max(apart, (here[i] - there[i].cwiseProduct(Vector3d(1, 1, -1))).norm());
+        apart =
+            equations::larger(apart, (here[i] - there[i].cwiseProduct(Vector3d(1, 1, -1))).norm());
       mirrored += apart < 1e-5;
     }
     EXPECT_EQ(mirrored, 1);

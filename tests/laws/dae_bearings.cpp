@@ -101,7 +101,7 @@ TEST(Bearings, CoefficientHasItsSlopeItsPeakAndItsSign) {
     const double v = 0.005 * i * vt;
     EXPECT_EQ(friction_coefficient(b, -v), -friction_coefficient(b, v));
     EXPECT_GT(friction_coefficient(b, v), 0);
-    largest = std::max(largest, friction_coefficient(b, v));
+    largest = equations::larger(largest, friction_coefficient(b, v));
   }
   EXPECT_NEAR(largest, 0.5, 1e-3);
   // Without a peak it grows with v.
@@ -247,7 +247,7 @@ double apart(const RunResult& a, const RunResult& b) {
   double worst = 0;
   for (std::size_t i = 0; i < a.trajectory.rows.size(); ++i)
     for (std::size_t k = 1; k <= 3; ++k)
-      worst = std::max(worst, std::abs(a.trajectory.rows[i][k] - b.trajectory.rows[i][k]));
+      worst = equations::larger(worst, std::abs(a.trajectory.rows[i][k] - b.trajectory.rows[i][k]));
   return worst;
 }
 

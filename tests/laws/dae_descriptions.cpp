@@ -153,7 +153,7 @@ TEST(Descriptions, HaveTheSameMotionAtTheStart) {
       const auto compare = [&](const Matrix3Xd& a, const Matrix3Xd& b, const char* what) {
         const double error = relative_error(a, b);
         EXPECT_LT(error, tolerance) << what;
-        worst = std::max(worst, error / tolerance);
+        worst = equations::larger(worst, error / tolerance);
       };
       const PointMotion &own = found.by_velocities, &other = expected.by_velocities;
       EXPECT_LT(found.moved, tolerance) << "it was assembled already";
@@ -220,7 +220,7 @@ TEST(Descriptions, EndRunsInTheSamePlace) {
       if (!found) continue;
       const double error = relative_error(*found, *expected), tolerance = run_tolerance * w->growth;
       EXPECT_LT(error, tolerance);
-      worst = std::max(worst, error / tolerance);
+      worst = equations::larger(worst, error / tolerance);
     }
   }
   EXPECT_EQ(mechanisms, wanted);

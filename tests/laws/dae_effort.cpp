@@ -3,6 +3,7 @@
 
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -58,7 +59,7 @@ double residue(const Scene& free, const EffortResult& r) {
     for (std::size_t i = 0; i < r.actuators.size(); ++i)
       tau[r.actuators[i].rate] += row.effort[static_cast<Eigen::Index>(i)];
     EXPECT_TRUE(chain.accelerations(row.t, row.q, row.u, tau, udot, lambda)) << chain.failure();
-    worst = std::max(worst, (udot - row.udot).cwiseAbs().maxCoeff());
+    worst = equations::larger(worst, (udot - row.udot).cwiseAbs().maxCoeff());
     size = std::max(size, row.udot.cwiseAbs().maxCoeff());
   }
   EXPECT_GT(r.rows.size(), 0u);
@@ -431,7 +432,7 @@ TEST(Effort, OfATableConverges) {
     const EffortResult r = effort(mechanism, request);
     double worst = 0;
     for (const EffortRow& found : r.rows)
-      worst = std::max(worst, found.effort.cwiseAbs().maxCoeff() / unit);
+      worst = equations::larger(worst, found.effort.cwiseAbs().maxCoeff() / unit);
     if (before > 0) {
       EXPECT_LT(worst, before / 20) << count;
     }

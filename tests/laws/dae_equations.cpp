@@ -18,6 +18,8 @@
 #include <numeric>
 #include <random>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_equations {
 namespace {
 
@@ -369,7 +371,7 @@ TEST(EquationRuns, HaveTheOrderOfRadau) {
       double largest = 0;
       for (std::size_t k = 0; k < r.y.size(); ++k)
         for (std::size_t j = first; j < first + count; ++j)
-          largest = std::max(largest, std::abs(r.y[k][j] - exact.y[k][j]));
+          largest = equations::larger(largest, std::abs(r.y[k][j] - exact.y[k][j]));
       return largest;
     };
     return std::log2(error(h) / error(h / 2));
@@ -398,7 +400,8 @@ TEST(EquationRuns, OfBothMethodsEndAlike) {
 TEST(EquationRuns, SampleMultipliersRightBehindAStep) {
   const auto error = [](const EquationRun& r) {
     double largest = 0;
-    for (const auto& y : r.y) largest = std::max(largest, std::abs(y[4] + 3 * 9.81 * y[1]));
+    for (const auto& y : r.y)
+      largest = equations::larger(largest, std::abs(y[4] + 3 * 9.81 * y[1]));
     return largest;
   };
   const EquationFile file = read_equations(example("suites/ivp/pendulum.toml"));

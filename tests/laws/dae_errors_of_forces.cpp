@@ -5,6 +5,7 @@
 #include "equations/ensemble.h"
 #include "equations/kkt_blocks.h"
 #include "equations/random_tree.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -191,7 +192,7 @@ TEST(ErrorsOfForces, ConvergeInEveryFormAndGauge) {
       // By joint: the largest of them is the error of reactions, and all are unique.
       double largest = 0;
       for (const auto& joint : tight.reaction_errors) {
-        largest = std::max(largest, joint.error_max);
+        largest = equations::larger(largest, joint.error_max);
         EXPECT_EQ(joint.not_unique, 0) << joint.joint;
       }
       EXPECT_EQ(largest, tight.reaction_error_max) << name << " " << way.form;

@@ -16,6 +16,8 @@
 #include <numbers>
 #include <random>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_events {
 namespace {
 
@@ -289,7 +291,8 @@ TEST(Events, OfAFourBarAreAtOneTimeInEveryForm) {
     ASSERT_EQ(result.events.size(), exact.events.size()) << form;
     double off = 0;  // of O.q, column 1
     for (std::size_t i = 0; i < exact.trajectory.rows.size(); ++i)
-      off = std::max(off, std::abs(result.trajectory.rows[i][1] - exact.trajectory.rows[i][1]));
+      off = equations::larger(off,
+                              std::abs(result.trajectory.rows[i][1] - exact.trajectory.rows[i][1]));
     EXPECT_LT(off, 0.05) << form;
     for (std::size_t i = 0; i < exact.events.size(); ++i) {
       const double rate = std::abs(exact.events[i].row[4]);  // O.u, behind O.q, A.q, C.q

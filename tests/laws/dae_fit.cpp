@@ -13,6 +13,7 @@
 #include <numbers>
 #include <random>
 
+#include "equations/tolerance.h"
 #include "equations/traced_four_bar.h"
 
 namespace momenta::dae_fit {
@@ -182,7 +183,7 @@ TEST(Fit, DerivativesInSpaceAgainstPosesAssembledAnew) {
                                 quantities);
           },
           h);
-      worst = std::max(worst, (slow - by[i].col(j)).cwiseAbs().maxCoeff());
+      worst = equations::larger(worst, (slow - by[i].col(j)).cwiseAbs().maxCoeff());
     }
   EXPECT_LT(worst, 1e-9);
 }

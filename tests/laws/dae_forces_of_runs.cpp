@@ -6,6 +6,7 @@
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -99,7 +100,7 @@ TEST(ForcesOfRuns, PowerOfDrivesIsWhatEnergyGains) {
         (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
     EXPECT_NEAR(rate, power + lost, 1e-6 * (1 + std::abs(power) + std::abs(lost) + udot.norm()))
         << seed;
-    largest = std::max(largest, std::abs(power));
+    largest = equations::larger(largest, std::abs(power));
   }
   EXPECT_GT(tried, 30);
   EXPECT_GT(flat_ones, 5);

@@ -29,7 +29,7 @@ double apart(const RunResult& a, const RunResult& b, int nq) {
   for (std::size_t i = 0; i < a.trajectory.rows.size(); ++i)
     for (std::size_t k = 1; k <= static_cast<std::size_t>(nq); ++k) {
       const double x = a.trajectory.rows[i][k], y = b.trajectory.rows[i][k];
-      worst = std::max(worst, std::abs(x - y) / (1 + std::abs(y)));
+      worst = equations::larger(worst, std::abs(x - y) / (1 + std::abs(y)));
     }
   return worst;
 }

@@ -16,6 +16,7 @@
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
+#include "equations/tolerance.h"
 
 #include <complex>
 #include <filesystem>
@@ -120,7 +121,7 @@ double left_over(OdeForm& form, double t, const std::vector<double>& y, Scalar s
   for (std::size_t i = 0; i < n; ++i) {
     Scalar slope = real[i];
     if constexpr (!std::is_same_v<Scalar, double>) slope += Scalar(0, imaginary[i]);
-    error = std::max(error, std::abs(w[i] - s * slope - r[i]) / unit(i));
+    error = equations::larger(error, std::abs(w[i] - s * slope - r[i]) / unit(i));
     terms = std::max({terms, std::abs(w[i]) / unit(i), std::abs(s * slope) / unit(i)});
   }
   return error / terms;

@@ -15,6 +15,7 @@
 #include "equations/gradient_runs.h"
 #include "equations/gradient_twin.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 namespace momenta::dae_gradient {
 namespace {
@@ -615,8 +616,8 @@ TEST(Gradient, ByEveryParameterOfTheExamplesIsThatOfRuns) {
     const GradientResult r = gradient(scene, request);
     double largest = 0;
     for (Eigen::Index j = 0; j < r.gradient.size(); ++j)
-      largest = std::max(largest,
-                         std::abs(r.gradient[j]) * r.variables[static_cast<std::size_t>(j)].size);
+      largest = equations::larger(
+          largest, std::abs(r.gradient[j]) * r.variables[static_cast<std::size_t>(j)].size);
     EXPECT_GT(largest, 0) << file;
     for (Eigen::Index j = 0; j < r.gradient.size(); ++j) {
       const RunVariable& v = r.variables[static_cast<std::size_t>(j)];

@@ -123,7 +123,7 @@ TEST_P(EveryForm, MovesATypedFourBarAsItsBodiesMove) {
   double worst = 0;
   for (std::size_t i = 0; i < a.trajectory.rows.size(); ++i)
     for (std::size_t k = 1; k <= 6; ++k)
-      worst = std::max(worst, std::abs(a.trajectory.rows[i][k] - b.trajectory.rows[i][k]));
+      worst = equations::larger(worst, std::abs(a.trajectory.rows[i][k] - b.trajectory.rows[i][k]));
   EXPECT_LT(worst, 1e-11);
   const auto alike = [&](double x, double y, const char* what) {
     EXPECT_NEAR(x, y, 1e-6 * y + 1e-13) << what;

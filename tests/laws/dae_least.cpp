@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "equations/tolerance.h"
 #include "equations/traced_four_bar.h"
 
 namespace momenta::dae_least {
@@ -214,8 +215,8 @@ TEST(Least, ReactionsAreTheRatesOfMomentum) {
       const double slope =
           (8 * (momentum[i + 1] - momentum[i - 1]) - momentum[i + 2] + momentum[i - 2]) / (12 * h);
       const double force = values.parts[static_cast<std::size_t>(k)][i];
-      largest = std::max(largest, std::abs(force));
-      worst = std::max(worst, std::abs(force - slope));
+      largest = equations::larger(largest, std::abs(force));
+      worst = equations::larger(worst, std::abs(force - slope));
     }
   EXPECT_LT(worst, 1e-7 * largest);
   // About the origin, where O lies: the effort, and what C has.

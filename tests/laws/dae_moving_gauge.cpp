@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -118,7 +119,7 @@ double error_of(const Motion& motion, int order, int count, double end) {
   }
   double error = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(motion.mechanism().nq()); ++i)
-    error = std::max(error, std::abs(step.y()[i] - exact.back()[i]));
+    error = equations::larger(error, std::abs(step.y()[i] - exact.back()[i]));
   return error;
 }
 

@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_order_explicit {
 namespace {
 
@@ -63,7 +65,7 @@ double dense_error(const std::string& method, double start, double h) {
       double y[2];
       const double t = t0 + (t1 - t0) * i / 20;
       between(t, y);
-      worst = std::max(worst, error(t, y));
+      worst = equations::larger(worst, error(t, y));
     }
     return true;
   };
@@ -118,7 +120,7 @@ TEST(ExplicitOrder, MechanismWithCorrectedStates) {
     const std::vector<double> y = four_bar(method, step);
     double largest = 0;
     for (std::size_t i = 0; i < y.size(); ++i)
-      largest = std::max(largest, std::abs(y[i] - truth[i]));
+      largest = equations::larger(largest, std::abs(y[i] - truth[i]));
     return largest;
   };
   EXPECT_NEAR(slope(error("dop853", 1.0 / 16), error("dop853", 1.0 / 32), 1), 8, 0.3);

@@ -6,6 +6,7 @@
 #include "equations/half_explicit.h"
 #include "equations/index2_trees.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/solver/implicit_methods.h>
@@ -166,7 +167,7 @@ TEST(HalfExplicitOrder, OneLinearSolutionAStage) {
                                 one_z.data(), one_f.data()));
       double largest = 0;
       for (std::size_t i = 0; i < m; ++i)
-        largest = std::max(largest, std::abs(one_z[i] - exact_z[i]));
+        largest = equations::larger(largest, std::abs(one_z[i] - exact_z[i]));
       return largest;
     };
     const double a = error(0.04), b = error(0.02);

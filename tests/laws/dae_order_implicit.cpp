@@ -15,6 +15,7 @@
 #include "equations/cartesian_pendulum.h"
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <cmath>
 #include <filesystem>
@@ -50,7 +51,8 @@ double orbit_error(int stages, int steps) {
   EXPECT_TRUE(run.done) << run.reason;
   EXPECT_EQ(run.counters.steps, steps);
   double error = 0;
-  for (std::size_t i = 0; i < 4; ++i) error = std::max(error, std::abs(run.y[i] - start[i]));
+  for (std::size_t i = 0; i < 4; ++i)
+    error = equations::larger(error, std::abs(run.y[i] - start[i]));
   return error;
 }
 
@@ -78,7 +80,8 @@ TEST(ImplicitOrder, GaussSamplesAreAsAccurateAsEnds) {
         };
         EXPECT_TRUE(integrate_gauss(stages, orbit, 0, start, {part * h, h}, options, look).done);
         const auto truth = integrate_explicit("dop853", fine, 0, start, {part * h}, tight, {});
-        for (std::size_t i = 0; i < 4; ++i) error = std::max(error, std::abs(seen[i] - truth.y[i]));
+        for (std::size_t i = 0; i < 4; ++i)
+          error = equations::larger(error, std::abs(seen[i] - truth.y[i]));
       }
       return error;
     };

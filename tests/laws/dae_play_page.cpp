@@ -3,6 +3,7 @@
 // node, or by Chromium; skipped where neither is installed.
 
 #include "equations/output_of.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -144,7 +145,7 @@ TEST(PlayPage, HasTheRunsOfTheLibrary) {
       for (std::size_t i = 0; i < rows.size(); ++i) {
         ASSERT_EQ(found[i].size(), rows[i].size());
         for (std::size_t k = 0; k < rows[i].size(); ++k)
-          apart = std::max(apart, std::abs(found[i][k].get<double>() - rows[i][k]));
+          apart = equations::larger(apart, std::abs(found[i][k].get<double>() - rows[i][k]));
         if (i < samples / 4) at_first = apart;
       }
       // Of index 3 the library ends Newton's method at the rounding of its norm, with |Φ| up to

@@ -89,7 +89,7 @@ TEST(SingularityHandling, DerivativeThatComesWithAResetIsF) {
     ode.begin_step(0, m.y.data());
     ASSERT_TRUE(ode.rhs(0, m.y.data(), evaluated.data()));
     double largest = 0;
-    for (double x : evaluated) largest = std::max(largest, std::abs(x));
+    for (double x : evaluated) largest = equations::larger(largest, std::abs(x));
     for (std::size_t i = 0; i < taken.size(); ++i)
       EXPECT_NEAR(taken[i], evaluated[i], 1e-12 * largest) << name << " " << i;
   }
@@ -137,7 +137,7 @@ TEST(SingularityHandling, ErrorsFollowTheToleranceThroughSingularPoses) {
     for (const double around : {1e-7, 1e-9, 1e-11}) {
       double worst = 0;
       for (const double factor : {1.0, 0.6, 0.35, 0.2}) {
-        worst = std::max(worst, std::abs(end_of(around * factor, evaluations) - exact));
+        worst = equations::larger(worst, std::abs(end_of(around * factor, evaluations) - exact));
         EXPECT_LT(evaluations, 12'000) << around * factor;  // steps do not collapse
       }
       EXPECT_LT(worst, 2e4 * around) << how << ", " << around;

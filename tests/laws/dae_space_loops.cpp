@@ -2,6 +2,7 @@
 // freedoms, and what a search finds.
 
 #include "equations/assembled_linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 
@@ -95,7 +96,7 @@ void expect_searched(const Scene& scene, const Assemblies& all, int starts,
     for (const FoundAssembly& a : all.all) {
       double gap = 0;
       for (Eigen::Index k = 0; k < s.q.size(); ++k)
-        gap = std::max(gap, std::abs(std::remainder(a.q[k] - s.q[k], 2 * pi)));
+        gap = equations::larger(gap, std::abs(std::remainder(a.q[k] - s.q[k], 2 * pi)));
       nearest = std::min(nearest, gap);
     }
     EXPECT_LT(nearest, 1e-6);

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -114,7 +115,8 @@ double apart(const RunResult& a, const RunResult& b, std::size_t unknowns) {
   for (std::size_t i = 0; i < std::min(a.trajectory.rows.size(), b.trajectory.rows.size()); ++i) {
     const auto &x = a.trajectory.rows[i], &y = b.trajectory.rows[i];
     EXPECT_EQ(x[0], y[0]);
-    for (std::size_t k = 1; k <= unknowns; ++k) largest = std::max(largest, std::abs(x[k] - y[k]));
+    for (std::size_t k = 1; k <= unknowns; ++k)
+      largest = equations::larger(largest, std::abs(x[k] - y[k]));
   }
   return largest;
 }

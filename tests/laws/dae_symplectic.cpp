@@ -13,6 +13,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <filesystem>
 #include <numbers>
@@ -155,7 +156,7 @@ double far_from_start(const std::string& gauge, const std::string& method, int c
   const auto back = turn(c.steps(method, turn(c.steps(method, start, h, count)), h, count));
   double worst = 0;
   for (std::size_t i = 0; i < back.size(); ++i)
-    worst = std::max(worst, std::abs(back[i] - start[i]) / (1 + std::abs(start[i])));
+    worst = equations::larger(worst, std::abs(back[i] - start[i]) / (1 + std::abs(start[i])));
   return worst;
 }
 

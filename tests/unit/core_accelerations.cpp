@@ -38,7 +38,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   const Model<Space> model = model_of<Space>(tree, scene);
   Workspace<Space, double> w(model);
   const double *q = s.q.data(), *u = s.u.data();
-  const auto note = [](double& most, double error) { most = std::max(most, error); };
+  const auto note = [](double& most, double error) { most = equations::larger(most, error); };
 
   Eigen::VectorXd udot(tree.nv), tau(tree.nv);
   ASSERT_TRUE(equations::acceleration_recursion(w, s.t, q, u, udot.data()));

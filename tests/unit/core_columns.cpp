@@ -1,6 +1,7 @@
 // Functions by points from files of columns, and how they go between their points.
 
 #include "equations/same_scene.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/expression/spline.h>
@@ -70,8 +71,8 @@ TEST(Interpolations, AreAsSmoothAsTheySay) {
       const At before = value(f, x[i] - h), after = value(f, x[i] + h);
       EXPECT_NEAR(value(f, x[i]).f, y[i], 1e-14);
       EXPECT_NEAR(before.f, after.f, 1e-7);
-      slope_jump = std::max(slope_jump, std::abs(after.first - before.first));
-      bend_jump = std::max(bend_jump, std::abs(after.second - before.second));
+      slope_jump = equations::larger(slope_jump, std::abs(after.first - before.first));
+      bend_jump = equations::larger(bend_jump, std::abs(after.second - before.second));
     }
     EXPECT_EQ(slope_jump < 1e-6, way != Interpolation::linear);
     EXPECT_EQ(bend_jump < 1e-6, way != Interpolation::monotone);  // linear ones have none
@@ -107,7 +108,8 @@ TEST(Interpolations, MonotoneOnesDoNotOvershoot) {
     const CubicSpline g(at, of, Interpolation::monotone);
     double most = 0;
     for (int i = 0; i < 1000; ++i)
-      most = std::max(most, std::abs(value(g, 1 + i / 1000.0).f - std::exp(1 + i / 1000.0)));
+      most =
+          equations::larger(most, std::abs(value(g, 1 + i / 1000.0).f - std::exp(1 + i / 1000.0)));
     return most;
   };
   EXPECT_GT(miss(20) / miss(40), 6);

@@ -84,7 +84,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   const LinkTree links = build_links(model);
   Workspace<Spatial, double> w(model);
   const double *q = s.q.data(), *u = s.u.data();
-  const auto note = [](double& most, double error) { most = std::max(most, error); };
+  const auto note = [](double& most, double error) { most = equations::larger(most, error); };
 
   // u̇ by M and by the articulated recursion.
   applied_forces(w, s.t, q, u);
@@ -225,12 +225,12 @@ TEST(Comparators, ChainsOf200Bodies) {
         symmetric(tree.nv, [&](auto&& entry) { mass_matrix_inward(w, entry); });
     const Eigen::MatrixXd own =
         symmetric(tree.nv, [&](auto&& entry) { composite.mass_matrix(s.t, q, entry); });
-    masses = std::max(masses, relative_error(own, m));
-    most = std::max(most,
-                    over_growth(relative_error(udot, articulated), growth_of(m, articulated), 1e6));
+    masses = equations::larger(masses, relative_error(own, m));
+    most = equations::larger(
+        most, over_growth(relative_error(udot, articulated), growth_of(m, articulated), 1e6));
     const double forces = (m.cwiseAbs() * articulated.cwiseAbs()).maxCoeff();
     inverse(s.t, q, u, articulated.data(), back.data());
-    most = std::max(most, relative_error(back, tau, forces));
+    most = equations::larger(most, relative_error(back, tau, forces));
   }
   EXPECT_LT(most, algebra_tol(200));
   EXPECT_LT(masses, algebra_tol(200));

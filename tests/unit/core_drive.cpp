@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "equations/tolerance.h"
+
 namespace momenta::core_drive {
 namespace {
 
@@ -178,7 +180,7 @@ TEST(MotionLaw, TableConvergesWithTheFourthPower) {
     const MotionLaw law(spec);
     double error = 0;
     for (double t = 0; t < 3.14; t += 0.01)
-      error = std::max(error, std::abs(at(law, t).f - std::sin(t)));
+      error = equations::larger(error, std::abs(at(law, t).f - std::sin(t)));
     if (previous > 0) {
       EXPECT_NEAR(previous / error, 16, 2);
     }

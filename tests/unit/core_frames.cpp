@@ -29,8 +29,9 @@ double error_of_poses(const Scene& scene, RandomTree& random, Algebra algebra) {
   for (std::size_t k = 0; k < expected.size(); ++k) {
     const int at = chain.tree().body(scene.bodies[k].name);
     const auto& pose = found[static_cast<std::size_t>(at)];
-    error = std::max(error, relative_error(pose.linear(), expected[k].linear()));
-    error = std::max(error, relative_error(pose.translation(), expected[k].translation(), reach));
+    error = equations::larger(error, relative_error(pose.linear(), expected[k].linear()));
+    error = equations::larger(error,
+                              relative_error(pose.translation(), expected[k].translation(), reach));
   }
   return error;
 }
@@ -39,8 +40,10 @@ void sweep(const TreeRecipe& recipe, int trees, unsigned seed) {
   double worst = 0;
   for (int i = 0; i < trees; ++i) {
     RandomTree random(seed + static_cast<unsigned>(i));
-    worst = std::max(worst, error_of_poses(random.scene(recipe), random, Algebra::spatial));
-    worst = std::max(worst, error_of_poses(random.planar_scene(recipe), random, Algebra::planar));
+    worst =
+        equations::larger(worst, error_of_poses(random.scene(recipe), random, Algebra::spatial));
+    worst = equations::larger(worst,
+                              error_of_poses(random.planar_scene(recipe), random, Algebra::planar));
   }
   EXPECT_LT(worst, algebra_tol(recipe.bodies));
   testing::Test::RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
@@ -57,7 +60,8 @@ TEST(Frames, Degenerate) {
   double worst = 0;
   for (unsigned seed = 30000; seed < 33000; ++seed) {
     RandomTree random(seed);
-    worst = std::max(worst, error_of_poses(random.scene(recipe), random, Algebra::spatial));
+    worst =
+        equations::larger(worst, error_of_poses(random.scene(recipe), random, Algebra::spatial));
   }
   EXPECT_LT(worst, algebra_tol(recipe.bodies));
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
@@ -83,7 +87,7 @@ TEST(Frames, EveryInclination) {
                         (opposite ? -1 : 1) * std::cos(tilt)};
         }
         scene.joints[1].axis = {0, 0, 1};
-        worst = std::max(worst, error_of_poses(scene, random, Algebra::spatial));
+        worst = equations::larger(worst, error_of_poses(scene, random, Algebra::spatial));
       }
   EXPECT_LT(worst, algebra_tol(3));
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");

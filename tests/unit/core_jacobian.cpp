@@ -58,7 +58,8 @@ void compare(const Scene& scene, RandomTree& random, bool& structured, double& w
   const Eigen::MatrixXd expected = twin(model, x.s, x.p);
   const double growth = condition_of(chain.mass_matrix(x.s.t, x.s.q));
   const double scale = std::max(1.0, expected.cwiseAbs().maxCoeff());
-  worst = std::max(worst, over_growth((J - expected).cwiseAbs().maxCoeff() / scale, growth));
+  worst =
+      equations::larger(worst, over_growth((J - expected).cwiseAbs().maxCoeff() / scale, growth));
 
   const Eigen::VectorXd dq = Eigen::VectorXd::Random(nq), dp = Eigen::VectorXd::Random(nv);
   Eigen::VectorXd dqdot(nq), dpdot(nv), d(nq + nv), along(nq + nv);
@@ -138,7 +139,7 @@ TEST(Jacobian, OfEveryLevelInSpaceAndInThePlane) {
       ASSERT_TRUE(
           chain.jacobian_times(s.t, s.q, p, d.head(chain.nq()), d.tail(chain.nv()), dqdot, dpdot));
       along << dqdot, dpdot;
-      worst = std::max(worst, (expected * d - along).cwiseAbs().maxCoeff() / scale);
+      worst = equations::larger(worst, (expected * d - along).cwiseAbs().maxCoeff() / scale);
     }
   }
   EXPECT_GT(on_revolutes, 40);

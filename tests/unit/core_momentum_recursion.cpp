@@ -42,7 +42,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   chain.momenta(s.t, s.q, s.u, momenta);
   const Energies e = chain.energies(s.t, s.q, s.u);
 
-  const auto note = [](double& most, double error) { most = std::max(most, error); };
+  const auto note = [](double& most, double error) { most = equations::larger(most, error); };
   const RealVector qdot_twin = twin.coordinate_rates_at(s.q, s.u);
   const RealVector pdot_twin = twin.momentum_rates(s.t, s.q, s.u);
   const RealMatrix m = twin.mass_matrix(s.t, s.q);

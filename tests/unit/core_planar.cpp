@@ -31,7 +31,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   ASSERT_FALSE(spatial.plan().planar);
   const Tree& tree = planar.tree();
   const TreeState s = random.state(tree), other = random.state(tree);
-  const auto note = [](double& most, double error) { most = std::max(most, error); };
+  const auto note = [](double& most, double error) { most = equations::larger(most, error); };
   const auto n = tree.nv;
 
   const Eigen::MatrixXd m = spatial.mass_matrix(s.t, s.q);

@@ -64,7 +64,7 @@ void sweep(const TreeRecipe& recipe, int trees, unsigned seed) {
   for (int i = 0; i < trees; ++i) {
     RandomTree random(seed + static_cast<unsigned>(i));
     const Scene scene = random.scene(recipe);
-    worst = std::max(worst, error_against_balance(scene, random));
+    worst = equations::larger(worst, error_against_balance(scene, random));
   }
   EXPECT_LT(worst, algebra_tol(2 * recipe.bodies));
   testing::Test::RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
@@ -119,7 +119,7 @@ TEST(Reactions, RateOfArticulatedMomentum) {
       const auto reaction = pass.reaction(k);
       for (int i = 0; i < 6; ++i) {
         size = std::max(size, std::abs(w.body[k].P[i]));
-        error = std::max(error, std::abs(reaction[i] - w.body[k].P[i]));
+        error = equations::larger(error, std::abs(reaction[i] - w.body[k].P[i]));
       }
       // udot comes out of the same pass
       const auto& body = tree.bodies[k];
@@ -127,7 +127,7 @@ TEST(Reactions, RateOfArticulatedMomentum) {
         EXPECT_NEAR(pass.acceleration(static_cast<std::size_t>(body.u + i)), udot[body.u + i],
                     algebra_tol(12) * growth * std::max(1.0, udot.cwiseAbs().maxCoeff()));
     }
-    worst = std::max(worst, over_growth(error / size, growth));
+    worst = equations::larger(worst, over_growth(error / size, growth));
   }
   EXPECT_LT(worst, algebra_tol(12));
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");

@@ -2,6 +2,7 @@
 // what tables, files and sentences call them.
 
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -138,7 +139,8 @@ TEST(DriftUnits, OfAnglesAloneAreInRadians) {
   EXPECT_TRUE(std::isnan(run.angle_drift_max));
   EXPECT_TRUE(run.series.angle_drift.empty());
   double most = 0;
-  for (const auto& row : run.trajectory.rows) most = std::max(most, std::abs(row[1] - row[2] / 2));
+  for (const auto& row : run.trajectory.rows)
+    most = equations::larger(most, std::abs(row[1] - row[2] / 2));
   EXPECT_NEAR(run.position_drift_max, most, 1e-14);
   EXPECT_LT(column(run, "position_drift [rad]"), run.trajectory.columns.size());
   EXPECT_LT(column(run, "velocity_drift [rad/s]"), run.trajectory.columns.size());

@@ -104,7 +104,7 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
     const auto dense = make_dense_kkt(mechanism), sparse = make_sparse_kkt(mechanism);
     const Solution plain = solve(*dense, *e, s.t, s.q, r, g, fade_evaluation);
     EXPECT_EQ(plain.faded, 0);
-    worst_dense = std::max(worst_dense, error(plain));
+    worst_dense = equations::larger(worst_dense, error(plain));
     worst_sparse =
         std::max(worst_sparse, error(solve(*sparse, *e, s.t, s.q, r, g, fade_evaluation)));
     // Where nothing fades the centre is of no consequence.
@@ -117,12 +117,13 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
     for (const VectorXd& towards : {VectorXd(), centre}) {
       const Solution found = solve(*fronts, *e, s.t, s.q, r, g, fade_evaluation, towards);
       EXPECT_EQ(found.faded, 0);
-      worst_fronts = std::max(worst_fronts, error(found));
+      worst_fronts = equations::larger(worst_fronts, error(found));
     }
     // Pivots sought among all unknowns, of the joints or of the bodies.
     for (const auto& make : {make_klu_kkt, make_body_kkt}) {
       const auto kkt = make(mechanism);
-      worst_klu = std::max(worst_klu, error(solve(*kkt, *e, s.t, s.q, r, g, fade_evaluation)));
+      worst_klu =
+          equations::larger(worst_klu, error(solve(*kkt, *e, s.t, s.q, r, g, fade_evaluation)));
       worst_klu =
           std::max(worst_klu, error(solve(*kkt, *e, s.t, s.q, r, g, fade_evaluation, centre)));
     }
@@ -266,9 +267,9 @@ TEST(Kkt, NearlyFlatRowInEveryOrientation) {
     for (const double angle : orientations()) {
       const Eigen::Quaterniond r(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
       const Scene scene = turned(row_of_four_bars(2, delta, 1), r);
-      worst = std::max(worst, error_near_flat(scene, Algebra::automatic, 1e-14, false));
-      worst_centred = std::max(worst_centred,
-                               error_near_flat(scene, Algebra::automatic, fade_evaluation, true));
+      worst = equations::larger(worst, error_near_flat(scene, Algebra::automatic, 1e-14, false));
+      worst_centred = equations::larger(
+          worst_centred, error_near_flat(scene, Algebra::automatic, fade_evaluation, true));
     }
     // The best any algorithm can do, ε/δ; where the row fades, what it would have carried: δ.
     const double fading = delta * std::pow(1e-14 / (delta * delta), 2);

@@ -286,7 +286,7 @@ TEST_P(PlanarLoopRows, AgreeWithSpace) {
     }
     if (!(condition < 30)) continue;  // the loop hardly moves what it closes
     ++compared;
-    worst = std::max(worst, relative_error(rates[1], rates[0]) / (condition * condition));
+    worst = equations::larger(worst, relative_error(rates[1], rates[0]) / (condition * condition));
   }
   EXPECT_GT(compared, 8);
   EXPECT_LT(worst, algebra_tol(28));

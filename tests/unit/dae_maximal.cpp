@@ -73,7 +73,7 @@ void compare(const Mechanism& mechanism, RandomTree& random, Worst& worst) {
     const double scale = std::max(
         {1.0, a.cwiseAbs().maxCoeff(), sa.cwiseAbs().size() ? sa.cwiseAbs().maxCoeff() : 0});
     double error = (a - b).cwiseAbs().maxCoeff();
-    if (m > 0) error = std::max(error, (sa - sb).cwiseAbs().maxCoeff());
+    if (m > 0) error = equations::larger(error, (sa - sb).cwiseAbs().maxCoeff());
     const double rates = (ra - rb).cwiseAbs().maxCoeff() / (1 + ra.cwiseAbs().maxCoeff());
     error = std::max(error / scale, rates) / allowed;
     EXPECT_LT(error, 1e-12) << what;
@@ -171,7 +171,7 @@ TEST(Maximal, SolvesTreesAsTheRecursion) {
         << seed;
     const double error = relative_error(found, exact) / allowed;
     EXPECT_LT(error, 1e-13) << seed;
-    worst = std::max(worst, error);
+    worst = equations::larger(worst, error);
   }
   RecordProperty("error", std::to_string(worst * 1e16) + "e-16");
 }

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -206,7 +207,7 @@ TEST(Rank, ReactionsThatRedundantLoopsShareAreMarked) {
                                 start.lambda + 3 * idle.col(0) / idle.col(0).norm());
   double changed = 0;
   for (std::size_t i = 0; i < a.joints.size(); ++i)
-    changed = std::max(changed, (a.joints[i].force - b.joints[i].force).norm());
+    changed = equations::larger(changed, (a.joints[i].force - b.joints[i].force).norm());
   EXPECT_GT(changed, 0.1);
 }
 

@@ -139,8 +139,8 @@ TEST(SoftenedLoops, AreThePenaltyEquationsOfTheLiterature) {
       const VectorXd masses = eigenvalues_of(K.cast<double>());
       const double growth = masses.maxCoeff() / masses.minCoeff();
       const auto note = [&](double& to, const VectorXd& found, const RealVector& exact) {
-        to = std::max(to,
-                      over_growth(relative_error(found, VectorXd(exact.cast<double>())), growth, 1e6));
+        to = equations::larger(
+            to, over_growth(relative_error(found, VectorXd(exact.cast<double>())), growth, 1e6));
       };
       note(worst_u, u, rates);
       // Along what no joint moves σ is the centre's: it acts on nothing.

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_solver_explicit {
 namespace {
 
@@ -53,7 +55,7 @@ const double period = 2 * M_PI;
 
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
   double d = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) d = std::max(d, std::abs(a[i] - b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) d = equations::larger(d, std::abs(a[i] - b[i]));
   return d;
 }
 IntegrationOptions tolerance(double tol) {
@@ -167,7 +169,7 @@ TEST_P(EveryExplicit, SamplesEveryOutputTimeInOrder) {
     seen.push_back(t);
     EXPECT_EQ(ydot, nullptr);
     const double energy = (y[2] * y[2] + y[3] * y[3]) / 2 - 1 / std::hypot(y[0], y[1]);
-    energy_error = std::max(energy_error, std::abs(energy + 0.5));
+    energy_error = equations::larger(energy_error, std::abs(energy + 0.5));
     return true;
   };
   const IntegrationResult r = run(system, kepler_start, times, observer);

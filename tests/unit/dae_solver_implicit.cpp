@@ -12,6 +12,7 @@
 #include "equations/cartesian_pendulum.h"
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <filesystem>
 #include <random>
@@ -190,8 +191,8 @@ TEST(Radau5, SamplesLieOnTheConstraintsAndChangeNothing) {
   Observer observer;
   observer.sample = [&](double t, const double* y, const double* ydot) {
     seen.push_back(t);
-    opened = std::max(opened, std::abs(y[0] * y[0] + y[1] * y[1] - 1));
-    off = std::max(off, std::abs(y[0] - CartesianPendulum::exact(t)[0]));
+    opened = equations::larger(opened, std::abs(y[0] * y[0] + y[1] * y[1] - 1));
+    off = equations::larger(off, std::abs(y[0] - CartesianPendulum::exact(t)[0]));
     EXPECT_NEAR(ydot[0], y[2], 1e-6);
     return true;
   };
@@ -392,13 +393,13 @@ TEST(BayoLedesma, HoldsPositionsRatesAndAccelerations) {
       const double *q = y, *v = y + mechanism.nq();
       e->place(t, q);
       e->positions(phi.data());
-      position = std::max(position, phi.cwiseAbs().maxCoeff());
+      position = equations::larger(position, phi.cwiseAbs().maxCoeff());
       e->move(v);
       e->velocities(phi.data());
-      rate = std::max(rate, phi.cwiseAbs().maxCoeff());
+      rate = equations::larger(rate, phi.cwiseAbs().maxCoeff());
       e->joint_forces(q, v, ydot + mechanism.nq(), nullptr, forces.data());
       e->accelerations(phi.data());
-      acceleration = std::max(acceleration, phi.cwiseAbs().maxCoeff());
+      acceleration = equations::larger(acceleration, phi.cwiseAbs().maxCoeff());
       return true;
     };
     std::vector<double> times;
@@ -495,7 +496,7 @@ void expect_same_solutions() {
     double size = 0, apart = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       size = std::max(size, std::abs(x[i]));
-      apart = std::max(apart, std::abs(x[i] - y[i]));
+      apart = equations::larger(apart, std::abs(x[i] - y[i]));
     }
     EXPECT_LT(apart, 1e-10 * size);
   }

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_solver_multistep {
 namespace {
 
@@ -104,7 +106,7 @@ TEST(Cvode, ShowsEachStepAndSamplesBetween) {
     observer.sample = [&](double t, const double* y, const double* ydot) {
       EXPECT_EQ(ydot, nullptr);
       seen.push_back(t);
-      worst = std::max(worst, std::abs(y[0] - std::cos(t)));
+      worst = equations::larger(worst, std::abs(y[0] - std::cos(t)));
       return true;
     };
     observer.step = [&](double t0, double t1, const Interpolant& between) {
@@ -114,7 +116,7 @@ TEST(Cvode, ShowsEachStepAndSamplesBetween) {
       for (const double t : {t0, (t0 + t1) / 2, t1}) {
         double y[2];
         between(t, y);
-        worst = std::max(worst, std::abs(y[0] - std::cos(t)));
+        worst = equations::larger(worst, std::abs(y[0] - std::cos(t)));
       }
       return true;
     };

@@ -12,6 +12,7 @@
 #include "equations/ensemble.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <filesystem>
 
@@ -24,7 +25,7 @@ using Eigen::VectorXd;
 double apart(const std::vector<double>& a, const std::vector<double>& b) {
   double worst = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    worst = std::max(worst, std::abs(a[i] - b[i]) / (1 + std::abs(a[i])));
+    worst = equations::larger(worst, std::abs(a[i] - b[i]) / (1 + std::abs(a[i])));
   return worst;
 }
 

@@ -20,6 +20,8 @@
 #include <cmath>
 #include <vector>
 
+#include "equations/tolerance.h"
+
 namespace momenta::dae_solver_tableaux {
 namespace {
 
@@ -70,7 +72,7 @@ class OrderConditions {
       long double left = 0;
       for (std::size_t i = 0; i < stages; ++i) left += w[i] * t.weight[i];
       const long double right = target * std::pow(theta, nodes) / t.density;
-      largest = std::max(largest, std::abs(left - right));
+      largest = equations::larger(largest, std::abs(left - right));
     }
     return static_cast<double>(largest);
   }

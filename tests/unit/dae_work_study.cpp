@@ -2,6 +2,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -371,7 +372,8 @@ TEST(ObservedOrder, OfReactionsIsThatOfTheMethod) {
       for (std::size_t i = 0; i < found.rows.size(); ++i) {
         const double truth = exact.rows[i][c];
         if (!std::isnan(truth))
-          error = std::max(error, std::abs(found.rows[i][c] - truth) / (1 + std::abs(truth)));
+          error =
+              equations::larger(error, std::abs(found.rows[i][c] - truth) / (1 + std::abs(truth)));
       }
     }
     steps.push_back(1 / h);
