@@ -182,6 +182,11 @@ Outcome outcome(const Scene& scene, const Asked& asked) {
           o.wrong = "done with a state that is no number";
           return o;
         }
+    if (!reliable(run)) {  // and told
+      o.status = "done, and departed";
+      o.reason = run.departure;
+      return o;
+    }
     o.kept = kept(mechanism, run);
     o.judged = true;
     const Promise p = promise(run.settings);
