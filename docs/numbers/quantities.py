@@ -35,27 +35,30 @@ def kind_of(summary):
 
 
 class Growth:
-    """t^exponent with its half range; no exponent at rounding level."""
+    """t^exponent with its half range; no exponent at rounding level, and where there is no power."""
 
     def __init__(self, exponent, half_range, kind):
         self.exponent, self.half_range, self.kind = exponent, half_range or 0.0, kind
 
     def __str__(self):
-        if self.exponent is None:
-            return "rounding"
         if self.half_range > 0.3:
             return "no power"
+        if self.exponent is None:
+            return "rounding"
         if abs(self.exponent) + self.half_range <= 0.15:
             return "level"
         return f"t^{self.exponent:.2f} ± {self.half_range:.2f}"
 
     def agrees(self, text):
         """Exponents are slopes of a curve with corners: what matters is whether the ranges meet."""
-        if self.exponent is None or text == "rounding":
-            return self.exponent is None and text == "rounding"
         slack = 0.05 if self.kind == "fixed" else 0.25
         if text == "no power":
             return self.half_range > 0.3 - slack
+        rounding = self.exponent is None and self.half_range == 0
+        if rounding or text == "rounding":
+            return rounding and text == "rounding"
+        if self.exponent is None:
+            return False
         if text == "level":
             exponent, half_range = 0.0, 0.15
         else:
