@@ -1,7 +1,7 @@
 #pragma once
 // Jumps of forces by formulas along a run. A derivative of the pieces is that of the run as long as
-// forces are continuous; where one jumps at a place of the motion, the moment of the jump moves with
-// θ, and the tangents jump too, which no step here does.
+// forces are continuous; where one jumps at a place of the motion, the moment of the jump moves
+// with θ, and the tangents jump too, which no step here does.
 //
 // Of a step the force is looked at in nine places, and where it changes most between two of them,
 // these are halved, the half of more change each time: what is continuous changes less and less.

@@ -154,10 +154,11 @@ class LinearFormula {
             (!tokens[i].number && other[i].text != tokens[i].text))
           return;
       if (!tokens[i].number || std::none_of(others.begin(), others.end(), differs)) continue;
-      const sixth_order::Slope slope =
-          sixth_order::slope_at(h_, sixth_order::exact, [&](std::size_t k, double) {
-            return Eigen::VectorXd::Constant(1, *others[k][i].number);
-          });
+      const auto number = [&](std::size_t k, double) {
+        return Eigen::VectorXd::Constant(1, *others[k][i].number);
+      };
+      const sixth_order::Slope slope = sixth_order::slope_at(
+          h_, sixth_order::exact, 0, Eigen::VectorXd::Constant(1, *tokens[i].number), number);
       if (!slope.agrees) return;
       changed.push_back({*tokens[i].number, slope.by[0]});
       names.push_back(name + std::to_string(names.size()));
