@@ -47,6 +47,7 @@ struct Asked {
   const std::vector<OtherParameter>& others;
   const FormOptions& gains;
   StartAdjoint* start_adjoint;  ///< null: the start is differenced
+  LawJumps& jumps;
   GradientResult& result;
 
   IntegrationOptions options() const {
@@ -86,7 +87,7 @@ struct Asked {
             start_adjoint->by(result.variables[j], others[j], slopes);
   }
   /// The first jump of a force in a step, as of law_jumps.h; empty: none.
-  std::string jump_in_step(LawJumps& jumps, double t0, double t1, const Interpolant& between,
+  std::string jump_in_step(double t0, double t1, const Interpolant& between,
                            std::vector<double>& inside) {
     if (!jumps.any()) return {};
     std::vector<double> rates(inside.size());
@@ -164,12 +165,11 @@ void Asked::forward() {
       result.times.push_back(t);
       return true;
     };
-  LawJumps jumps(mechanism);
   std::vector<double> inside;
   bool ended = false;
   if (request.progress || jumps.any())
     observer.step = [&](double t0, double t1, const Interpolant& between) {
-      lost = jump_in_step(jumps, t0, t1, between, inside);
+      lost = jump_in_step(t0, t1, between, inside);
       ended = request.progress && !request.progress(t1);
       return lost.empty() && !ended;
     };
@@ -213,11 +213,10 @@ void Asked::adjoint() {
   RecordedRun record(form, s.step, s.end_time, butcher_tableau(s.integrator).c,
                      request.integral || stages->needs_rates());
   Observer observer;
-  LawJumps jumps(mechanism);
   std::string lost;
   std::vector<double> inside(static_cast<std::size_t>(record.size()));
   observer.step = [&](double t0, double t1, const Interpolant& between) {
-    lost = jump_in_step(jumps, t0, t1, between, inside);
+    lost = jump_in_step(t0, t1, between, inside);
     return lost.empty() && (!request.progress || request.progress(0.5 * t1)) && record.keep(t0, t1);
   };
   const IntegrationResult run = integrate(s.integrator, record, start.t, form.initial(start),
@@ -327,9 +326,16 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
   }
   const std::vector<OtherParameter> others =
       other_parameters(scene, mechanism, result.variables, at_once);
+  std::vector<Scene> near;  // where numbers decide on moments of jumps
+  for (const RunVariable& v : result.variables)
+    if (v.kind == RunVariable::Kind::parameter && has_corners(mechanism.scene())) try {
+        near.push_back(scene.scene({{v.name, v.value + 1e-9 * v.size}}));
+      } catch (const SceneError&) {  // no neighbour, no formula that differs
+      }
+  LawJumps jumps(mechanism, near, !form.momentum_like());
   Asked asked{
       request, mechanism, start, form, others, options, start_adjoint ? &*start_adjoint : nullptr,
-      result};
+      jumps,   result};
   if (result.adjoint)
     asked.adjoint();
   else

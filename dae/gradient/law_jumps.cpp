@@ -14,61 +14,118 @@ using Eigen::VectorXd;
 
 constexpr int pieces = 8, halvings = 24;
 
-/// Whether the formula may jump at a moment that the motion, not the time alone, decides on; not
-/// where functions by points stand in it.
-bool may_jump(const Formula& formula) {
+/// Whether the formula may jump at a moment that the motion decides on, or a number that differs in
+/// one of the others; or, where `rates` count, its derivatives, at places of points too.
+bool may_jump(const Formula& formula, const std::vector<Formula>& others, bool rates = false,
+              bool points_move = false) {
   using O = formula::Operation;
   const std::vector<formula::Instruction>& tape = formula.expression.tape();
+  const auto differs = [&](std::size_t i) {
+    return std::any_of(others.begin(), others.end(), [&](const Formula& other) {
+      const std::vector<formula::Instruction>& near = other.expression.tape();
+      return near.size() != tape.size() || near[i].number != tape[i].number;
+    });
+  };
   std::vector<char> moves(tape.size(), 0);
   bool jumps = false;
   for (std::size_t i = 0; i < tape.size(); ++i) {
     const formula::Instruction& in = tape[i];
-    if (in.operation == O::spline) return false;
-    if (in.operation == O::number) continue;
+    if (in.operation == O::number) {
+      moves[i] = differs(i);
+      continue;
+    }
     if (in.operation == O::variable) {
       moves[i] = formula.signals[static_cast<std::size_t>(in.a)].kind != Signal::Kind::time;
       continue;
     }
     const auto of = [&](int k) { return k >= 0 && moves[static_cast<std::size_t>(k)] != 0; };
-    moves[i] = of(in.a) || of(in.b) || of(in.c);
+    moves[i] = of(in.a) || of(in.b) || of(in.c) || (in.operation == O::spline && points_move);
     if (in.operation == O::choice || in.operation == O::sign || in.operation == O::floor)
       jumps |= of(in.a);
+    if (rates && (in.operation == O::abs || in.operation == O::min || in.operation == O::max ||
+                  in.operation == O::spline))
+      jumps |= moves[i] != 0;
   }
   return jumps;
 }
 
+/// Events do not know functions by points.
+bool calls_points(const Formula& formula) {
+  const std::vector<formula::Instruction>& tape = formula.expression.tape();
+  return std::any_of(tape.begin(), tape.end(), [](const formula::Instruction& in) {
+    return in.operation == formula::Operation::spline;
+  });
+}
+
 }  // namespace
 
-LawJumps::LawJumps(const Mechanism& mechanism) {
+LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
+                   bool of_accelerations)
+    : of_accelerations_(of_accelerations) {
   const Scene& scene = mechanism.scene();
   if (scene.lagrangian) return;
   const FormulaReader reader(scene);
   std::vector<EventSpec> events;
-  for (const ForceSpec& force : scene.forces) {
+  for (std::size_t i = 0; i < scene.forces.size(); ++i) {
+    const ForceSpec& force = scene.forces[i];
     if (force.kind == "potential") continue;
     const std::vector<OwnName> own = reader.own_names(force);
-    each_formula(force, [&](const std::string&, const std::string& law) {
+    each_formula(force, [&](const std::string& key, const std::string& law) {
       const Formula formula = reader.read(law, own);
-      if (!may_jump(formula)) return;
+      std::vector<Formula> near;
+      for (const Scene& other : others) {
+        const FormulaReader its(other);
+        each_formula(other.forces[i], [&](const std::string& its_key, const std::string& its_law) {
+          if (its_key == key) near.push_back(its.read(its_law, its.own_names(other.forces[i])));
+        });
+      }
+      if (calls_points(formula) || !may_jump(formula, near)) return;
       std::vector<std::string> names;
       for (const Signal& signal : formula.signals) names.push_back(in_words(scene, signal));
       EventSpec event;
       event.when.text =
           formula::text_of(formula.expression.tape(), formula.expression.outputs().front(), names);
       events.push_back(std::move(event));
-      laws_.push_back(law);
+      laws_.push_back("the force by " + reading::in_quotes(law));
     });
   }
-  if (!laws_.empty()) values_ = std::make_unique<EventValues>(mechanism, events);
+  if (!events.empty()) values_ = std::make_unique<EventValues>(mechanism, events);
+  const bool points_move = std::any_of(others.begin(), others.end(), [&](const Scene& other) {
+    return !std::equal(scene.functions.begin(), scene.functions.end(), other.functions.begin(),
+                       [](const FunctionSpec& a, const FunctionSpec& b) { return a.x == b.x; });
+  });
+  for (std::size_t i = 0; i < scene.drives.size(); ++i) {
+    const std::string& law = scene.drives[i].law;
+    if (law_corner(scene.drives[i]).empty()) continue;
+    std::vector<Formula> near;
+    for (const Scene& other : others)
+      near.push_back(FormulaReader(other).read_of_time(other.drives[i].law));
+    if (!may_jump(reader.read_of_time(law), near, true, points_move)) continue;
+    drives_.emplace_back(scene.drives[i]);
+    for (const char* what : {"the drive by ", "the rate of the drive by "})
+      laws_.push_back(what + reading::in_quotes(law));
+    if (of_accelerations)
+      laws_.push_back("the acceleration of the drive by " + reading::in_quotes(law));
+  }
 }
 
 std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
   const auto count = static_cast<Eigen::Index>(laws_.size());
+  const Eigen::Index of_drive = of_accelerations_ ? 3 : 2;
   VectorXd q, u;
   const auto at = [&](double t, VectorXd& f) {
     f.resize(count);
-    if (!motion(t, q, u)) return false;
-    values_->at(t, q, u, f.data());
+    if (values_) {
+      if (!motion(t, q, u)) return false;
+      values_->at(t, q, u, f.data());
+    }
+    Eigen::Index first = count - static_cast<Eigen::Index>(drives_.size()) * of_drive;
+    for (const MotionLaw& law : drives_) {
+      double second;
+      law.evaluate(t, f[first], f[first + 1], second);
+      if (of_accelerations_) f[first + 2] = second;
+      first += of_drive;
+    }
     return f.allFinite();
   };
   std::vector<VectorXd> f(pieces + 1);
@@ -99,11 +156,10 @@ std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
     }
     // Of a continuous force it is 2⁻²⁴ of the first, or that of its steepest place.
     if (std::abs(high[k] - low[k]) > 0.01 * first)
-      return "at t = " + compact(to, 6) + " s the force by " +
-             reading::in_quotes(laws_[static_cast<std::size_t>(k)]) + " jumps from " +
-             compact(low[k], 3) + " to " + compact(high[k], 3) +
-             ", at a moment that depends on the motion; expected one that is continuous, as with "
-             "tanh in the place of sign";
+      return "at t = " + compact(to, 6) + " s " + laws_[static_cast<std::size_t>(k)] +
+             " jumps from " + compact(low[k], 3) + " to " + compact(high[k], 3) +
+             ", at a moment that depends on the motion or on what the derivative is by; expected "
+             "one that is continuous, as with tanh in the place of sign";
   }
   return "";
 }

@@ -608,6 +608,46 @@ TEST(Gradient, RefusesJumpsThatTheMotionPasses) {
         << law;
 }
 
+/// A force or a law that jumps at a time that a number decides on, by that number alone.
+TEST(Gradient, RefusesTimesOfJumpsThatNumbersMove) {
+  const auto pushed = [](const std::string& law) {
+    return "[parameters]\nF = 1\nt0 = 0.4\n" + slide +
+           "stiffness = 9\n[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"" + law + "\"\n";
+  };
+  const auto moved = [](const std::string& law) {
+    return on_a_cart(
+        "[parameters]\nF = 0.3\nt0 = 0.4\n[[drive]]\njoint = \"X\"\nkind = "
+        "\"formula\"\nlaw = \"" +
+        law + "\"\n");
+  };
+  struct Row {
+    std::string text, of, form;
+    bool refused;
+  };
+  for (const auto& [text, of, form, refused] :
+       std::vector<Row>{{pushed("if(t > t0, F, 0)"), "X.q", "momentum", true},
+                        {pushed("F*floor(2*t/t0)"), "X.q", "acceleration", true},
+                        {pushed("F*max(0, t - t0)"), "X.q", "acceleration", false},
+                        {moved("F*max(0, t - t0)"), "J.q", "momentum", true},
+                        {moved("F*max(0, t - t0)^2"), "J.q", "momentum", false},
+                        {moved("F*max(0, t - t0)^2"), "J.q", "acceleration", true},
+                        {moved("F*max(0, t - t0)^3"), "J.q", "acceleration", false}}) {
+    if (!refused) {
+      expect_runs(text, adaptive(of, {"t0", "F"}, form, 0.7), 1e-4, 1e-5);
+      continue;
+    }
+    EXPECT_NO_THROW(gradient(of_text(text), adaptive(of, {"F"}, form, 0.7, "dop853", 1e-8)));
+    for (const GradientMode mode : {GradientMode::forward, GradientMode::adjoint}) try {
+        GradientRequest request = adaptive(of, {"t0"}, form, 0.7, "dop853", 1e-8);
+        request.mode = mode;
+        gradient(of_text(text), request);
+        ADD_FAILURE() << text;
+      } catch (const SceneError& e) {
+        EXPECT_NE(std::string(e.what()).find(" jumps from "), std::string::npos) << e.what();
+      }
+  }
+}
+
 /// A scene far from the origin, whose neighbours at a part of its places cannot be assembled.
 TEST(Gradient, OfPlacesFarAwayNeedsNoFarNeighbours) {
   const auto text = [](double x0) {
