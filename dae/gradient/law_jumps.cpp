@@ -2,10 +2,12 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/gradient/law_jumps.h>
+#include <momenta/dae/gradient/linear_formulas.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace momenta {
 namespace {
@@ -14,28 +16,25 @@ using Eigen::VectorXd;
 
 constexpr int pieces = 8, halvings = 24;
 
-/// Whether the formula may jump at a moment that the motion decides on, or a number that differs in
-/// one of the others; or, where `rates` count, its derivatives, at places of points too.
-bool may_jump(const Formula& formula, const std::vector<Formula>& others, bool rates = false,
-              bool points_move = false) {
+/// Whether a formula may jump at a moment that the motion decides on, by variables of which
+/// `moves`, or a number that differs in one of the others; or, where `rates` count, its
+/// derivatives, at places of points too.
+template <class Moves>
+bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Expression>& others,
+              bool rates = false, bool points_move = false) {
   using O = formula::Operation;
-  const std::vector<formula::Instruction>& tape = formula.expression.tape();
+  const std::vector<formula::Instruction>& tape = formula.tape();
   const auto differs = [&](std::size_t i) {
-    return std::any_of(others.begin(), others.end(), [&](const Formula& other) {
-      const std::vector<formula::Instruction>& near = other.expression.tape();
-      return near.size() != tape.size() || near[i].number != tape[i].number;
+    return std::any_of(others.begin(), others.end(), [&](const Expression& other) {
+      return other.tape().size() != tape.size() || other.tape()[i].number != tape[i].number;
     });
   };
   std::vector<char> moves(tape.size(), 0);
   bool jumps = false;
   for (std::size_t i = 0; i < tape.size(); ++i) {
     const formula::Instruction& in = tape[i];
-    if (in.operation == O::number) {
-      moves[i] = differs(i);
-      continue;
-    }
-    if (in.operation == O::variable) {
-      moves[i] = formula.signals[static_cast<std::size_t>(in.a)].kind != Signal::Kind::time;
+    if (in.operation == O::number || in.operation == O::variable) {
+      moves[i] = in.operation == O::number ? differs(i) : of_motion(in.a);
       continue;
     }
     const auto of = [&](int k) { return k >= 0 && moves[static_cast<std::size_t>(k)] != 0; };
@@ -47,6 +46,32 @@ bool may_jump(const Formula& formula, const std::vector<Formula>& others, bool r
       jumps |= moves[i] != 0;
   }
   return jumps;
+}
+bool may_jump(const Formula& formula, const std::vector<Expression>& others, bool rates = false,
+              bool points_move = false) {
+  const auto of_motion = [&](int i) {
+    return formula.signals[static_cast<std::size_t>(i)].kind != Signal::Kind::time;
+  };
+  return may_jump(formula.expression, of_motion, others, rates, points_move);
+}
+
+/// The same of a force in a Lagrangian, whose parameters are variables.
+bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scene>& others) {
+  AnyNames names;
+  const auto of_motion = [&](int i) {
+    const std::string& name = names.names[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < scene.parameters.size(); ++k)
+      if (scene.parameters[k].name == name)
+        return std::any_of(others.begin(), others.end(), [&](const Scene& other) {
+          return other.parameters[k].value != scene.parameters[k].value;
+        });
+    return name != "t";
+  };
+  try {
+    return may_jump(Expression(law, names), of_motion, {});
+  } catch (const std::logic_error&) {  // it calls functions by points
+    return false;
+  }
 }
 
 /// Events do not know functions by points.
@@ -63,30 +88,36 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
                    bool of_accelerations)
     : of_accelerations_(of_accelerations) {
   const Scene& scene = mechanism.scene();
-  if (scene.lagrangian) return;
   const FormulaReader reader(scene);
+  std::vector<FormulaReader> readers;
+  for (const Scene& other : others) readers.emplace_back(other);
   std::vector<EventSpec> events;
+  const auto watch = [&](const std::string& law, std::string text) {
+    events.emplace_back().when.text = std::move(text);
+    laws_.push_back("the force by " + reading::in_quotes(law));
+  };
+  if (scene.lagrangian)
+    for (const LagrangianSpec::Force& force : scene.lagrangian->forces)
+      if (may_jump(force.value.text, scene, others)) watch(force.value.text, force.value.text);
   for (std::size_t i = 0; i < scene.forces.size(); ++i) {
     const ForceSpec& force = scene.forces[i];
     if (force.kind == "potential") continue;
     const std::vector<OwnName> own = reader.own_names(force);
     each_formula(force, [&](const std::string& key, const std::string& law) {
       const Formula formula = reader.read(law, own);
-      std::vector<Formula> near;
-      for (const Scene& other : others) {
-        const FormulaReader its(other);
-        each_formula(other.forces[i], [&](const std::string& its_key, const std::string& its_law) {
-          if (its_key == key) near.push_back(its.read(its_law, its.own_names(other.forces[i])));
+      std::vector<Expression> near;
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        const ForceSpec& its = others[k].forces[i];
+        each_formula(its, [&](const std::string& its_key, const std::string& its_law) {
+          if (its_key == key)
+            near.push_back(readers[k].read(its_law, readers[k].own_names(its)).expression);
         });
       }
       if (calls_points(formula) || !may_jump(formula, near)) return;
       std::vector<std::string> names;
       for (const Signal& signal : formula.signals) names.push_back(in_words(scene, signal));
-      EventSpec event;
-      event.when.text =
-          formula::text_of(formula.expression.tape(), formula.expression.outputs().front(), names);
-      events.push_back(std::move(event));
-      laws_.push_back("the force by " + reading::in_quotes(law));
+      watch(law, formula::text_of(formula.expression.tape(), formula.expression.outputs().front(),
+                                  names));
     });
   }
   if (!events.empty()) values_ = std::make_unique<EventValues>(mechanism, events);
@@ -97,9 +128,9 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
   for (std::size_t i = 0; i < scene.drives.size(); ++i) {
     const std::string& law = scene.drives[i].law;
     if (law_corner(scene.drives[i]).empty()) continue;
-    std::vector<Formula> near;
-    for (const Scene& other : others)
-      near.push_back(FormulaReader(other).read_of_time(other.drives[i].law));
+    std::vector<Expression> near;
+    for (std::size_t k = 0; k < others.size(); ++k)
+      near.push_back(readers[k].read_of_time(others[k].drives[i].law).expression);
     if (!may_jump(reader.read_of_time(law), near, true, points_move)) continue;
     drives_.emplace_back(scene.drives[i]);
     for (const char* what : {"the drive by ", "the rate of the drive by "})

@@ -513,6 +513,14 @@ TEST(Gradient, ByNumbersOfLawsOfDrives) {
       expect_runs(on_a_cart(drive), adaptive("J.q", by, form, end), 1e-4, 1e-5);
 }
 
+/// Rates of tangents that jump by more than a step of any length has the tolerance of.
+TEST(Gradient, GetsOverTheSteepestLaws) {
+  const std::string text = on_a_cart(
+      "[parameters]\nt0 = 4\nT = 0.02\n[[drive]]\njoint = \"X\"\nkind = \"step\"\nto = 0.3\n"
+      "start = \"t0\"\nduration = \"T\"\n");
+  expect_runs(text, adaptive("J.q", {"t0"}, "acceleration", 4.2, "vern9", 1e-11), 1e-6, 1e-5);
+}
+
 TEST(Gradient, ByNumbersOfStopsDeadBandsAndFriction) {
   struct Row {
     std::string text, of;
@@ -614,6 +622,11 @@ TEST(Gradient, RefusesTimesOfJumpsThatNumbersMove) {
     return "[parameters]\nF = 1\nt0 = 0.4\n" + slide +
            "stiffness = 9\n[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"" + law + "\"\n";
   };
+  const auto by_lagrangian = [](const std::string& law) {
+    return "[parameters]\nF = 2\nt0 = 0.4\n[lagrangian]\ncoordinates = [\"x\"]\nposition = [0.1]\n"
+           "kinetic = \"x.dot^2/2\"\npotential = \"4.5*x^2\"\nforce.x = \"" +
+           law + "\"\n";
+  };
   const auto moved = [](const std::string& law) {
     return on_a_cart(
         "[parameters]\nF = 0.3\nt0 = 0.4\n[[drive]]\njoint = \"X\"\nkind = "
@@ -624,14 +637,16 @@ TEST(Gradient, RefusesTimesOfJumpsThatNumbersMove) {
     std::string text, of, form;
     bool refused;
   };
-  for (const auto& [text, of, form, refused] :
-       std::vector<Row>{{pushed("if(t > t0, F, 0)"), "X.q", "momentum", true},
-                        {pushed("F*floor(2*t/t0)"), "X.q", "acceleration", true},
-                        {pushed("F*max(0, t - t0)"), "X.q", "acceleration", false},
-                        {moved("F*max(0, t - t0)"), "J.q", "momentum", true},
-                        {moved("F*max(0, t - t0)^2"), "J.q", "momentum", false},
-                        {moved("F*max(0, t - t0)^2"), "J.q", "acceleration", true},
-                        {moved("F*max(0, t - t0)^3"), "J.q", "acceleration", false}}) {
+  for (const auto& [text, of, form, refused] : std::vector<Row>{
+           {pushed("if(t > t0, F, 0)"), "X.q", "momentum", true},
+           {pushed("F*floor(2*t/t0)"), "X.q", "acceleration", true},
+           {by_lagrangian("if(t > t0, F, 0)"), "x", "momentum", true},
+           {by_lagrangian("F*max(0, t - t0) - F*max(0, 0.01 - x)"), "x", "momentum", false},
+           {pushed("F*max(0, t - t0)"), "X.q", "acceleration", false},
+           {moved("F*max(0, t - t0)"), "J.q", "momentum", true},
+           {moved("F*max(0, t - t0)^2"), "J.q", "momentum", false},
+           {moved("F*max(0, t - t0)^2"), "J.q", "acceleration", true},
+           {moved("F*max(0, t - t0)^3"), "J.q", "acceleration", false}}) {
     if (!refused) {
       expect_runs(text, adaptive(of, {"t0", "F"}, form, 0.7), 1e-4, 1e-5);
       continue;
