@@ -33,7 +33,7 @@ void MotionParts::take_parameters(const VectorXd& theta, bool derivatives,
   for (Index j = 0; j < theta.size(); ++j) {
     const auto at = [&](std::size_t i, double h) {
       VectorXd near = theta;
-      near[j] += sixth_order::points[i].k * h;
+      near[j] += sixth_order::k_of(i) * h;
       return parameters_at(near);
     };
     values.parameters_by.col(j) =

@@ -49,7 +49,7 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
     const double widest = sixth_order::part * sizes_[j];
     const auto at_point = [&](std::size_t point, double h) {
       VectorXd near = values;
-      near[j] += sixth_order::points[point].k * h;
+      near[j] += sixth_order::k_of(point) * h;
       const std::unique_ptr<Mechanism> other = family_.at(near);
       if (other->nq() != mechanism.nq() || other->nv() != nv || other->m() != m)
         throw SceneError("with " + family_.names()[static_cast<std::size_t>(j)] + " = " +

@@ -174,13 +174,14 @@ bool SweptParts::at(const VectorXd& theta, bool derivatives, MotionValues& value
     for (Index j = 0; derivatives && j < theta.size(); ++j) {
       const auto at_point = [&](std::size_t i, double h) {
         VectorXd other = theta;
-        other[j] += sixth_order::points[i].k * h;
+        other[j] += sixth_order::k_of(i) * h;
         if (!take(other, near)) throw SceneError(why_);
         return VectorXd(near.reshaped());
       };
-      by.push_back(
-          sixth_order::slope_of(sixth_order::part * sizes_[j], sixth_order::iterated, at_point)
-              .by.reshaped(table.rows(), table.cols()));
+      // At one width: what closes no longer a little away is no candidate.
+      by.push_back(sixth_order::slope_at(sixth_order::part * sizes_[j], sixth_order::iterated, 0,
+                                         table.reshaped(), at_point)
+                       .by.reshaped(table.rows(), table.cols()));
     }
     values.parts.clear();
     values.parts_by.clear();

@@ -66,9 +66,17 @@ bool has_corners(const Scene& scene) {
                       std::any_of(force.force_law.begin(), force.force_law.end(), with_one) ||
                       std::any_of(force.torque_law.begin(), force.torque_law.end(), with_one);
              }) ||
-         std::any_of(scene.drives.begin(), scene.drives.end(), [](const DriveSpec& drive) {
-           return drive.kind == "step" || drive.kind == "table" || !law_corner(drive).empty();
-         });
+         std::any_of(scene.drives.begin(), scene.drives.end(),
+                     [](const DriveSpec& drive) {
+                       return drive.kind == "step" || drive.kind == "table" ||
+                              !law_corner(drive).empty();
+                     }) ||
+         (scene.lagrangian &&
+          (with_one(scene.lagrangian->lagrangian.text) ||
+           with_one(scene.lagrangian->kinetic.text) || with_one(scene.lagrangian->potential.text) ||
+           std::any_of(
+               scene.lagrangian->forces.begin(), scene.lagrangian->forces.end(),
+               [&](const LagrangianSpec::Force& force) { return with_one(force.value.text); })));
 }
 
 std::vector<std::string> corners(const Scene& scene, const std::string& of_functional) {
@@ -95,6 +103,11 @@ std::vector<std::string> corners(const Scene& scene, const std::string& of_funct
       if (!corner_of(scene, law).empty())
         remarks.push_back("a force by the formula " + reading::in_quotes(law) + ending);
   }
+  if (scene.lagrangian)
+    for (const LagrangianSpec::Force& force : scene.lagrangian->forces)
+      if (!corner_of(scene, force.value.text).empty())
+        remarks.push_back("a force by the formula " + reading::in_quotes(force.value.text) +
+                          ending);
   return remarks;
 }
 

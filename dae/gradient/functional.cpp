@@ -127,7 +127,7 @@ void Functional::take_energy(double t, const VectorXd& q, const VectorXd& u, con
       energy_tangents_[j] +=
           sixth_order::slope_of(sixth_order::part / along, sixth_order::exact,
                                 [&](std::size_t i, double h) {
-                                  const double s = sixth_order::points[i].k * h;
+                                  const double s = sixth_order::k_of(i) * h;
                                   return VectorXd(VectorXd::Constant(
                                       1, energy(*e_, t, q + s * dq.col(j), u + s * du.col(j))));
                                 })

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -28,6 +29,8 @@ using Eigen::VectorXd;
 
 /// A variable has no effect where dJ/dθ times its size is below this part of J.
 constexpr double effect = 1e-10;
+/// Absolute tolerance of tangents, whose rates jump at corners: to less no step gets over them.
+constexpr double least_at_corners = 1e-10;
 
 std::unique_ptr<FormAdjoint> form_adjoint(const Mechanism& mechanism, const OdeForm& form,
                                           const std::vector<OtherParameter>& others) {
@@ -44,6 +47,7 @@ struct Asked {
   const std::vector<OtherParameter>& others;
   const FormOptions& gains;
   StartAdjoint* start_adjoint;  ///< null: the start is differenced
+  LawJumps& jumps;
   GradientResult& result;
 
   IntegrationOptions options() const {
@@ -82,6 +86,22 @@ struct Asked {
         rows.col(static_cast<Eigen::Index>(j)) +=
             start_adjoint->by(result.variables[j], others[j], slopes);
   }
+  /// The first jump of a force in a step, as of law_jumps.h; empty: none.
+  std::string jump_in_step(double t0, double t1, const Interpolant& between,
+                           std::vector<double>& inside) {
+    if (!jumps.any()) return {};
+    std::vector<double> rates(inside.size());
+    return jumps.in_step(t0, t1, [&](double t, VectorXd& q, VectorXd& u) {
+      between(t, inside.data());
+      const bool of_form = form.momentum_like() && jumps.takes_rates();
+      if (of_form && !form.rhs(t, inside.data(), rates.data())) return false;
+      q = Eigen::Map<const VectorXd>(inside.data(), mechanism.nq());
+      u = Eigen::Map<const VectorXd>(
+          form.momentum_like() ? form.rates().data() : inside.data() + mechanism.nq(),
+          mechanism.nv());
+      return true;
+    });
+  }
   void forward();
   void adjoint();
 };
@@ -103,12 +123,10 @@ void Asked::forward() {
   VectorXd sizes(directions);
   for (int j = 0; j < directions; ++j)
     sizes[j] = result.variables[static_cast<std::size_t>(j)].size;
-  TangentSystem system(form, tangents, request.integral ? &*functional : nullptr, sizes,
-                       has_corners(mechanism.scene()));
-  const std::vector<double> y0 = system.initial(form.initial(start), tangents_at_start);
-  IntegrationOptions integration = options();
-  integration.rtol *= system.tolerance_factor();
-  integration.atol *= system.tolerance_factor();
+  const bool turns = has_corners(mechanism.scene());
+  double tangents_scale = turns ? std::max(1.0, least_at_corners / std::max(s.atol, 1e-300))
+                                : std::numeric_limits<double>::infinity();
+  std::optional<TangentSystem> system;
   std::vector<double> times = request.times;
   if (!outputs.empty()) {
     if (times.front() > start.t) times.insert(times.begin(), start.t);
@@ -126,9 +144,9 @@ void Asked::forward() {
   if (request.trajectory || !outputs.empty())
     observer.sample = [&](double t, const double* y, const double*) {
       if (!outputs.empty() && t < request.times.front()) return true;
-      const Looking looking(system);
-      if (!system.motion(t, y, motion)) {
-        lost = system.failure();
+      const Looking looking(*system);
+      if (!system->motion(t, y, motion)) {
+        lost = system->failure();
         return false;
       }
       if (!outputs.empty()) {
@@ -147,33 +165,39 @@ void Asked::forward() {
       result.times.push_back(t);
       return true;
     };
-  LawJumps jumps(mechanism);
-  std::vector<double> inside(y0.size()), rates(y0.size());
+  std::vector<double> inside;
+  bool ended = false;
   if (request.progress || jumps.any())
     observer.step = [&](double t0, double t1, const Interpolant& between) {
-      if (jumps.any())
-        lost = jumps.in_step(t0, t1, [&](double t, VectorXd& q, VectorXd& u) {
-          between(t, inside.data());
-          const bool of_form = form.momentum_like() && jumps.takes_rates();
-          if (of_form && !form.rhs(t, inside.data(), rates.data())) return false;
-          q = Eigen::Map<const VectorXd>(inside.data(), mechanism.nq());
-          u = Eigen::Map<const VectorXd>(
-              form.momentum_like() ? form.rates().data() : inside.data() + mechanism.nq(),
-              mechanism.nv());
-          return true;
-        });
-      return lost.empty() && (!request.progress || request.progress(t1));
+      lost = jump_in_step(t0, t1, between, inside);
+      ended = request.progress && !request.progress(t1);
+      return lost.empty() && !ended;
     };
-  const IntegrationResult run =
-      integrate(s.integrator, system, start.t, y0, times, integration, observer);
+  IntegrationResult run;
+  // Where rates of tangents jump by so much that no step has their tolerance, they get a larger
+  // one.
+  for (int i = 0; i < 3 && !run.done; ++i, tangents_scale *= 1e3) {
+    if (i > 0 && (!turns || ended || !lost.empty() || !system->lost().empty() ||
+                  request.max_cpu_seconds > 0))
+      break;
+    result.times.clear(), result.tangents.clear(), result.output_slopes.clear();
+    system.emplace(form, tangents, request.integral ? &*functional : nullptr, sizes,
+                   tangents_scale);
+    IntegrationOptions integration = options();
+    integration.rtol *= system->tolerance_factor();
+    integration.atol *= system->tolerance_factor();
+    const std::vector<double> y0 = system->initial(form.initial(start), tangents_at_start);
+    inside.resize(y0.size());
+    run = integrate(s.integrator, *system, start.t, y0, times, integration, observer);
+  }
   if (!run.done)
-    throw none(!lost.empty() ? lost : system.lost().empty() ? run.reason : system.lost());
-  take(run, system.singular_passages());
+    throw none(!lost.empty() ? lost : system->lost().empty() ? run.reason : system->lost());
+  take(run, system->singular_passages());
   if (request.integral) {
-    result.value = system.integral(run.y.data());
-    result.gradient = system.integral_tangents(run.y.data());
+    result.value = system->integral(run.y.data());
+    result.gradient = system->integral_tangents(run.y.data());
   } else if (functional) {
-    if (!system.motion(run.end_time, run.y.data(), motion)) throw none(system.failure());
+    if (!system->motion(run.end_time, run.y.data(), motion)) throw none(system->failure());
     result.value =
         (*functional)(run.end_time, motion.q, motion.u, motion.dq, motion.du, result.gradient);
   }
@@ -189,14 +213,16 @@ void Asked::adjoint() {
   RecordedRun record(form, s.step, s.end_time, butcher_tableau(s.integrator).c,
                      request.integral || stages->needs_rates());
   Observer observer;
-  bool ended = false;
-  observer.step = [&](double t0, double t1, const Interpolant&) {
-    ended = request.progress && !request.progress(0.5 * t1);
-    return !ended && record.keep(t0, t1);
+  std::string lost;
+  std::vector<double> inside(static_cast<std::size_t>(record.size()));
+  observer.step = [&](double t0, double t1, const Interpolant& between) {
+    lost = jump_in_step(t0, t1, between, inside);
+    return lost.empty() && (!request.progress || request.progress(0.5 * t1)) && record.keep(t0, t1);
   };
   const IntegrationResult run = integrate(s.integrator, record, start.t, form.initial(start),
                                           {start.t, s.end_time}, options(), observer);
-  if (!run.done) throw none(record.lost().empty() ? run.reason : record.lost());
+  if (!run.done)
+    throw none(!lost.empty() ? lost : record.lost().empty() ? run.reason : record.lost());
   take(run, record.singular_passages());
   if (record.redundant()) stages->by_rows();
   AdjointRun back(form, *stages, functional, request.integral, s.integrator,
@@ -232,7 +258,10 @@ GradientMode gradient_mode(const std::string& name) {
   return static_cast<GradientMode>(found - gradient_modes().begin());
 }
 
-GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
+namespace {
+
+GradientResult by_one_run(const SceneText& scene, const GradientRequest& request,
+                          bool& at_corners) {
   const Mechanism mechanism(scene.scene(), scene.options);
   GradientResult result;
   expect_smooth_motion(mechanism.scene());
@@ -262,11 +291,7 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   result.adjoint = request.mode == GradientMode::adjoint ||
                    (request.mode == GradientMode::automatic && refused.empty() && !turns &&
                     result.variables.size() > most_forward);
-  if (result.adjoint && turns)
-    result.remarks.push_back(
-        "there are stops, dead bands, friction or formulas with corners, at which derivatives turn "
-        "where the motion is smooth, and steps of an adjoint follow the motion alone: expected the "
-        "mode 'forward' for more digits");
+  at_corners = has_corners(mechanism.scene()) && (s.step > 0 || result.adjoint);
 
   const Start start = assemble(mechanism).start;
   FormRunner runner(mechanism, start, s, request.max_cpu_seconds);  // completes the settings
@@ -301,9 +326,16 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   }
   const std::vector<OtherParameter> others =
       other_parameters(scene, mechanism, result.variables, at_once);
+  std::vector<Scene> near;  // where numbers decide on moments of jumps
+  for (const RunVariable& v : result.variables)
+    if (v.kind == RunVariable::Kind::parameter && has_corners(mechanism.scene())) try {
+        near.push_back(scene.scene({{v.name, v.value + 1e-9 * v.size}}));
+      } catch (const SceneError&) {  // no neighbour, no formula that differs
+      }
+  LawJumps jumps(mechanism, near, !form.momentum_like());
   Asked asked{
       request, mechanism, start, form, others, options, start_adjoint ? &*start_adjoint : nullptr,
-      result};
+      jumps,   result};
   if (result.adjoint)
     asked.adjoint();
   else
@@ -320,6 +352,50 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
             effect * std::abs(result.value))
       result.without_effect.push_back(v.name);
   }
+  return result;
+}
+
+/// Where derivatives turn at corners and steps do not follow them: the largest derivative against
+/// that of half the step, or, of a sweep back, of tangents that steps follow.
+void check_corners(const SceneText& scene, const GradientRequest& request, GradientResult& result) {
+  constexpr double told = 1e-4, refused = 1e-2;
+  Eigen::Index of = 0;
+  double most = 0;
+  for (Eigen::Index j = 0; j < result.gradient.size(); ++j) {
+    const double change =
+        result.variables[static_cast<std::size_t>(j)].size * std::abs(result.gradient[j]);
+    if (change > most) most = change, of = j;
+  }
+  const std::string& name = result.variables[static_cast<std::size_t>(of)].name;
+  const bool fixed = request.settings.step > 0;
+  GradientRequest other = request;
+  other.by = {name};
+  other.mode = fixed && result.adjoint ? GradientMode::adjoint : GradientMode::forward;
+  other.settings.step /= 2;
+  other.trajectory = false;
+  other.progress = {};
+  if (request.progress) other.progress = [&](double) { return request.progress(result.end_time); };
+  bool ignored = false;
+  const double found = result.gradient[of],
+               expected = by_one_run(scene, other, ignored).gradient[0],
+               apart = std::abs(found - expected);
+  if (!(apart > told * std::abs(expected))) return;
+  std::string sentence =
+      "the derivative by " + reading::in_quotes(name) + " is " + compact(found, 6) + ", but " +
+      compact(expected, 6) + (fixed ? " with half the step" : " by the mode 'forward'") +
+      ", as the motion passes corners (stops, dead bands, friction, laws), where derivatives turn; "
+      "expected " +
+      (fixed ? "shorter steps or a method with error control" : "that mode, or less tolerance");
+  if (apart > refused * std::abs(expected)) throw SceneError(scene.scene().where({}) + sentence);
+  result.remarks.push_back(std::move(sentence));
+}
+
+}  // namespace
+
+GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
+  bool at_corners = false;
+  GradientResult result = by_one_run(scene, request, at_corners);
+  if (at_corners && result.gradient.size() > 0) check_corners(scene, request, result);
   return result;
 }
 

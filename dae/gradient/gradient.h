@@ -12,8 +12,9 @@
 //
 // Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Formulas with
 // corners are differentiated on the piece they are on; steps of a method with error control then
-// follow the tangents too, which turn where the motion is smooth. The mechanism is integrated as it
-// is written.
+// follow the tangents too, which turn where the motion is smooth. Fixed steps and sweeps back,
+// which do not, are checked by others. Forces that jump at a moment which depends on θ are refused.
+// The mechanism is integrated as it is written.
 
 #include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/study/run_result.h>
@@ -62,8 +63,8 @@ struct GradientResult {
   double value = 0;                    ///< J
   std::vector<RunVariable> variables;  ///< θ
   Eigen::VectorXd gradient;            ///< dJ/dθ, in the unit of J over that of θ
-  /// Of θ by which rows of equations are differences of neighbouring scenes: to how many digits
-  /// those of fourth order agree with them; of others 16.
+  /// Of θ by which rows of equations are differences of neighbouring scenes: to how many digits the
+  /// formulas of sixth_order.h agree; of others 16.
   std::vector<double> digits;
   std::vector<std::string> without_effect;  ///< names of θ whose part of J is below 1e-10 of it
   std::vector<std::string> remarks;         ///< sentences on what is not smooth

@@ -2,10 +2,12 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/gradient/law_jumps.h>
+#include <momenta/dae/gradient/linear_formulas.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace momenta {
 namespace {
@@ -14,61 +16,147 @@ using Eigen::VectorXd;
 
 constexpr int pieces = 8, halvings = 24;
 
-/// Whether the formula may jump at a moment that the motion, not the time alone, decides on; not
-/// where functions by points stand in it.
-bool may_jump(const Formula& formula) {
+/// Whether a formula may jump at a moment that the motion decides on, by variables of which
+/// `moves`, or a number that differs in one of the others; or, where `rates` count, its
+/// derivatives, at places of points too.
+template <class Moves>
+bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Expression>& others,
+              bool rates = false, bool points_move = false) {
   using O = formula::Operation;
-  const std::vector<formula::Instruction>& tape = formula.expression.tape();
+  const std::vector<formula::Instruction>& tape = formula.tape();
+  const auto differs = [&](std::size_t i) {
+    return std::any_of(others.begin(), others.end(), [&](const Expression& other) {
+      return other.tape().size() != tape.size() || other.tape()[i].number != tape[i].number;
+    });
+  };
   std::vector<char> moves(tape.size(), 0);
   bool jumps = false;
   for (std::size_t i = 0; i < tape.size(); ++i) {
     const formula::Instruction& in = tape[i];
-    if (in.operation == O::spline) return false;
-    if (in.operation == O::number) continue;
-    if (in.operation == O::variable) {
-      moves[i] = formula.signals[static_cast<std::size_t>(in.a)].kind != Signal::Kind::time;
+    if (in.operation == O::number || in.operation == O::variable) {
+      moves[i] = in.operation == O::number ? differs(i) : of_motion(in.a);
       continue;
     }
     const auto of = [&](int k) { return k >= 0 && moves[static_cast<std::size_t>(k)] != 0; };
-    moves[i] = of(in.a) || of(in.b) || of(in.c);
+    moves[i] = of(in.a) || of(in.b) || of(in.c) || (in.operation == O::spline && points_move);
     if (in.operation == O::choice || in.operation == O::sign || in.operation == O::floor)
       jumps |= of(in.a);
+    if (rates && (in.operation == O::abs || in.operation == O::min || in.operation == O::max ||
+                  in.operation == O::spline))
+      jumps |= moves[i] != 0;
   }
   return jumps;
+}
+bool may_jump(const Formula& formula, const std::vector<Expression>& others, bool rates = false,
+              bool points_move = false) {
+  const auto of_motion = [&](int i) {
+    return formula.signals[static_cast<std::size_t>(i)].kind != Signal::Kind::time;
+  };
+  return may_jump(formula.expression, of_motion, others, rates, points_move);
+}
+
+/// The same of a force in a Lagrangian, whose parameters are variables.
+bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scene>& others) {
+  AnyNames names;
+  const auto of_motion = [&](int i) {
+    const std::string& name = names.names[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < scene.parameters.size(); ++k)
+      if (scene.parameters[k].name == name)
+        return std::any_of(others.begin(), others.end(), [&](const Scene& other) {
+          return other.parameters[k].value != scene.parameters[k].value;
+        });
+    return name != "t";
+  };
+  try {
+    return may_jump(Expression(law, names), of_motion, {});
+  } catch (const std::logic_error&) {  // it calls functions by points
+    return false;
+  }
+}
+
+/// Events do not know functions by points.
+bool calls_points(const Formula& formula) {
+  const std::vector<formula::Instruction>& tape = formula.expression.tape();
+  return std::any_of(tape.begin(), tape.end(), [](const formula::Instruction& in) {
+    return in.operation == formula::Operation::spline;
+  });
 }
 
 }  // namespace
 
-LawJumps::LawJumps(const Mechanism& mechanism) {
+LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
+                   bool of_accelerations)
+    : of_accelerations_(of_accelerations) {
   const Scene& scene = mechanism.scene();
-  if (scene.lagrangian) return;
   const FormulaReader reader(scene);
+  std::vector<FormulaReader> readers;
+  for (const Scene& other : others) readers.emplace_back(other);
   std::vector<EventSpec> events;
-  for (const ForceSpec& force : scene.forces) {
+  const auto watch = [&](const std::string& law, std::string text) {
+    events.emplace_back().when.text = std::move(text);
+    laws_.push_back("the force by " + reading::in_quotes(law));
+  };
+  if (scene.lagrangian)
+    for (const LagrangianSpec::Force& force : scene.lagrangian->forces)
+      if (may_jump(force.value.text, scene, others)) watch(force.value.text, force.value.text);
+  for (std::size_t i = 0; i < scene.forces.size(); ++i) {
+    const ForceSpec& force = scene.forces[i];
     if (force.kind == "potential") continue;
     const std::vector<OwnName> own = reader.own_names(force);
-    each_formula(force, [&](const std::string&, const std::string& law) {
+    each_formula(force, [&](const std::string& key, const std::string& law) {
       const Formula formula = reader.read(law, own);
-      if (!may_jump(formula)) return;
+      std::vector<Expression> near;
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        const ForceSpec& its = others[k].forces[i];
+        each_formula(its, [&](const std::string& its_key, const std::string& its_law) {
+          if (its_key == key)
+            near.push_back(readers[k].read(its_law, readers[k].own_names(its)).expression);
+        });
+      }
+      if (calls_points(formula) || !may_jump(formula, near)) return;
       std::vector<std::string> names;
       for (const Signal& signal : formula.signals) names.push_back(in_words(scene, signal));
-      EventSpec event;
-      event.when.text =
-          formula::text_of(formula.expression.tape(), formula.expression.outputs().front(), names);
-      events.push_back(std::move(event));
-      laws_.push_back(law);
+      watch(law, formula::text_of(formula.expression.tape(), formula.expression.outputs().front(),
+                                  names));
     });
   }
-  if (!laws_.empty()) values_ = std::make_unique<EventValues>(mechanism, events);
+  if (!events.empty()) values_ = std::make_unique<EventValues>(mechanism, events);
+  const bool points_move = std::any_of(others.begin(), others.end(), [&](const Scene& other) {
+    return !std::equal(scene.functions.begin(), scene.functions.end(), other.functions.begin(),
+                       [](const FunctionSpec& a, const FunctionSpec& b) { return a.x == b.x; });
+  });
+  for (std::size_t i = 0; i < scene.drives.size(); ++i) {
+    const std::string& law = scene.drives[i].law;
+    if (law_corner(scene.drives[i]).empty()) continue;
+    std::vector<Expression> near;
+    for (std::size_t k = 0; k < others.size(); ++k)
+      near.push_back(readers[k].read_of_time(others[k].drives[i].law).expression);
+    if (!may_jump(reader.read_of_time(law), near, true, points_move)) continue;
+    drives_.emplace_back(scene.drives[i]);
+    for (const char* what : {"the drive by ", "the rate of the drive by "})
+      laws_.push_back(what + reading::in_quotes(law));
+    if (of_accelerations)
+      laws_.push_back("the acceleration of the drive by " + reading::in_quotes(law));
+  }
 }
 
 std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
   const auto count = static_cast<Eigen::Index>(laws_.size());
+  const Eigen::Index of_drive = of_accelerations_ ? 3 : 2;
   VectorXd q, u;
   const auto at = [&](double t, VectorXd& f) {
     f.resize(count);
-    if (!motion(t, q, u)) return false;
-    values_->at(t, q, u, f.data());
+    if (values_) {
+      if (!motion(t, q, u)) return false;
+      values_->at(t, q, u, f.data());
+    }
+    Eigen::Index first = count - static_cast<Eigen::Index>(drives_.size()) * of_drive;
+    for (const MotionLaw& law : drives_) {
+      double second;
+      law.evaluate(t, f[first], f[first + 1], second);
+      if (of_accelerations_) f[first + 2] = second;
+      first += of_drive;
+    }
     return f.allFinite();
   };
   std::vector<VectorXd> f(pieces + 1);
@@ -99,11 +187,10 @@ std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
     }
     // Of a continuous force it is 2⁻²⁴ of the first, or that of its steepest place.
     if (std::abs(high[k] - low[k]) > 0.01 * first)
-      return "at t = " + compact(to, 6) + " s the force by " +
-             reading::in_quotes(laws_[static_cast<std::size_t>(k)]) + " jumps from " +
-             compact(low[k], 3) + " to " + compact(high[k], 3) +
-             ", at a moment that depends on the motion; expected one that is continuous, as with "
-             "tanh in the place of sign";
+      return "at t = " + compact(to, 6) + " s " + laws_[static_cast<std::size_t>(k)] +
+             " jumps from " + compact(low[k], 3) + " to " + compact(high[k], 3) +
+             ", at a moment that depends on the motion or on what the derivative is by; expected "
+             "one that is continuous, as with tanh in the place of sign";
   }
   return "";
 }

@@ -12,7 +12,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 
 namespace momenta {
 namespace {
@@ -91,25 +90,6 @@ std::vector<Token> tokens_of(std::string_view text, std::span<const ParameterSpe
   return all;
 }
 
-/// Any name is a variable by its own name.
-class AnyNames final : public FormulaNames {
- public:
-  /// Variables are numbered in this order, others follow.
-  explicit AnyNames(std::vector<std::string> known) : names(std::move(known)) {
-    for (std::size_t i = 0; i < names.size(); ++i) places_.emplace(names[i], static_cast<int>(i));
-  }
-  std::optional<Meaning> meaning(std::string_view name, std::size_t) override {
-    const auto [found, is_new] = places_.emplace(name, static_cast<int>(names.size()));
-    if (is_new) names.emplace_back(name);
-    return Meaning{found->second, 0};
-  }
-  std::string expected(std::string_view) const override { return ""; }
-  std::vector<std::string> names;
-
- private:
-  std::unordered_map<std::string, int> places_;
-};
-
 /// A number of the formula that θ changes.
 struct Changed {
   double value = 0, slope = 0;
@@ -154,10 +134,11 @@ class LinearFormula {
             (!tokens[i].number && other[i].text != tokens[i].text))
           return;
       if (!tokens[i].number || std::none_of(others.begin(), others.end(), differs)) continue;
-      const sixth_order::Slope slope =
-          sixth_order::slope_at(h_, sixth_order::exact, [&](std::size_t k, double) {
-            return Eigen::VectorXd::Constant(1, *others[k][i].number);
-          });
+      const auto number = [&](std::size_t k, double) {
+        return Eigen::VectorXd::Constant(1, *others[k][i].number);
+      };
+      const sixth_order::Slope slope = sixth_order::slope_at(
+          h_, sixth_order::exact, 0, Eigen::VectorXd::Constant(1, *tokens[i].number), number);
       if (!slope.agrees) return;
       changed.push_back({*tokens[i].number, slope.by[0]});
       names.push_back(name + std::to_string(names.size()));

@@ -64,13 +64,17 @@ void Neighbours::make() {
 
 const Eigen::VectorXd& Neighbours::law_slope(std::size_t drive, double t) {
   take(sixth_order::slope_of(h_, sixth_order::exact, [&](std::size_t i, double h) {
-    Width& width = this->width(h);
-    if (width.laws.empty()) {
-      for (const auto& made : width.mechanisms) width.laws.push_back(made->tree().drives);
-      for (const Scene& made : width.scenes) width.laws.push_back(build_valid_tree(made).drives);
+    const std::vector<MotionLaw>* laws = &own_.tree().drives;
+    if (i != sixth_order::middle) {
+      Width& width = this->width(h);
+      if (width.laws.empty()) {
+        for (const auto& made : width.mechanisms) width.laws.push_back(made->tree().drives);
+        for (const Scene& made : width.scenes) width.laws.push_back(build_valid_tree(made).drives);
+      }
+      laws = &width.laws[i];
     }
     double f, rate, second;
-    width.laws[i][drive].evaluate(t, f, rate, second);
+    (*laws)[drive].evaluate(t, f, rate, second);
     return Eigen::Vector2d(f, rate);
   }));
   return slope_;

@@ -9,6 +9,7 @@
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -32,24 +33,29 @@ class Neighbours {
   /// Makes the mechanisms of the widest width at which there are some. @throws SceneError where
   /// there is none, or it has other coordinates or equations
   void make();
-  const Mechanism& mechanism(std::size_t point, double h) { return *at(h).mechanisms[point]; }
+  const Mechanism& mechanism(std::size_t point, double h) {
+    return point == sixth_order::middle ? own_ : *at(h).mechanisms[point];
+  }
 
   /// ∂/∂θ of f(evaluation, numbers), which fills numbers of this size at one state. Counts how far
-  /// differences of fourth order are from it. Cost: six plain evaluations, of each width that the
-  /// state asks for
+  /// the formulas that check it are off. Cost: seven plain evaluations, six more of each further
+  /// width that the state asks for
   template <class F>
   const Eigen::VectorXd& slope(Eigen::Index size, F&& f) {
-    plain_.resize(size);
-    take(sixth_order::slope_of(h_, sixth_order::exact, [&](std::size_t i, double h) {
-      f(*at(h).evaluations[i], plain_);
-      return plain_;
-    }));
+    return slope(size, f, 0);
+  }
+  /// The same of rows of equations, of which those of corrections vanish but for rounding: they are
+  /// looked at beside the largest of all that were taken.
+  template <class F>
+  const Eigen::VectorXd& slope_of_rows(Eigen::Index size, F&& f) {
+    slope(size, f, largest_);
+    if (size > 0) largest_ = std::max(largest_, slope_.cwiseAbs().maxCoeff());
     return slope_;
   }
   /// The same of f, ḟ of a law of the tree's drives at t.
   const Eigen::VectorXd& law_slope(std::size_t drive, double t);
 
-  /// Digits to which differences of both orders agree, of all that was taken; 16: nothing was.
+  /// Digits to which the formulas agree, of all that was taken; 16: nothing was.
   double digits() const;
 
  private:
@@ -62,6 +68,20 @@ class Neighbours {
   Width& width(double h);
   Width& at(double h);
   void take(sixth_order::Slope slope);
+  template <class F>
+  const Eigen::VectorXd& slope(Eigen::Index size, F&& f, double usual) {
+    plain_.resize(size);
+    const auto there = [&](std::size_t i, double h) {
+      f(i == sixth_order::middle ? own() : *at(h).evaluations[i], plain_);
+      return plain_;
+    };
+    take(sixth_order::slope_of(h_, sixth_order::exact, there, usual));
+    return slope_;
+  }
+  Evaluation<double>& own() {
+    if (!here_) here_ = own_.evaluation<double>();
+    return *here_;
+  }
 
   RunVariable variable_;
   double h_;
@@ -69,8 +89,10 @@ class Neighbours {
   const Mechanism& own_;
   MechanismOptions options_;
   std::array<Width, sixth_order::widths> widths_;
+  std::unique_ptr<Evaluation<double>> here_;  ///< of `own_`
   Eigen::VectorXd plain_, slope_;
   double apart_ = 0, size_ = 0;  ///< sums
+  double largest_ = 0;           ///< of rows
 };
 
 }  // namespace momenta

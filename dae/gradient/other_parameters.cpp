@@ -12,13 +12,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The derivative of the numbers that scenes near θ have; empty where a difference of fourth order
-/// has another: at θ they jump, as where a frame is chosen anew.
-VectorXd numbers_by(const NumberSlopes& slopes, Neighbours& near) {
+/// The derivative of the numbers that scenes near θ have; empty where the formulas that check it
+/// are off: at θ they jump, as where a frame is chosen anew.
+VectorXd numbers_by(const NumberSlopes& slopes, const Scene& own, Neighbours& near) {
   double of = 0;
   std::vector<VectorXd> made;
   const sixth_order::Slope slope =
       sixth_order::slope_of(near.h(), sixth_order::read, [&](std::size_t i, double h) {
+        if (i == sixth_order::middle) return slopes.numbers(own);
         if (h != of) {
           made.clear();
           for (const Scene& scene : near.scenes(h)) made.push_back(slopes.numbers(scene));
@@ -29,8 +30,9 @@ VectorXd numbers_by(const NumberSlopes& slopes, Neighbours& near) {
         }
         return made[i];
       });
-  if (slope.by.size() == 0 || !(slope.apart <= 1e-4 * slope.by.cwiseAbs().maxCoeff())) return {};
-  return slope.by;
+  if (slope.by.size() == 0) return {};
+  const bool known = slope.agrees || slope.apart <= 1e-4 * slope.by.cwiseAbs().maxCoeff();
+  return known ? slope.by : VectorXd();
 }
 
 /// Numbers of bodies', joints', loops' and springs' own, of as many of these as share nothing by
@@ -171,7 +173,7 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
       };
       const Change whole = change(*same);
       VectorXd numbers;
-      if (whole != Change::more) numbers = numbers_by(*slopes, *near);
+      if (whole != Change::more) numbers = numbers_by(*slopes, mechanism.scene(), *near);
       const bool known = numbers.size() > 0, of_places = known && whole >= Change::places;
       if (of_places && whole == Change::drives) other.drives = mechanism.tree().drives.size();
       if (known && plain && change(*plain) == Change::more) {

@@ -39,7 +39,7 @@ struct OtherParameter {
 template <class Rows>
 const Eigen::VectorXd& slope_of_rows(Neighbours& near, const Rows& rows, const Eigen::VectorXd& x,
                                      Eigen::Index size) {
-  return near.slope(size, [&](Evaluation<double>& e, Eigen::VectorXd& out) {
+  return near.slope_of_rows(size, [&](Evaluation<double>& e, Eigen::VectorXd& out) {
     rows(static_cast<EquationRows<double>&>(e), x.data(), out.data());
   });
 }
@@ -97,7 +97,7 @@ class RowDerivatives {
     return d;
   }
 
-  /// ∂r/∂θ, size × directions. Cost: six plain evaluations or more for each parameter.
+  /// ∂r/∂θ, size × directions. Cost: seven plain evaluations or more for each parameter.
   template <class Rows>
   Eigen::MatrixXd by_parameters(const Rows& rows, const Eigen::VectorXd& x, Eigen::Index size) {
     Eigen::MatrixXd d = Eigen::MatrixXd::Zero(size, directions());

@@ -46,7 +46,7 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
         widest, sixth_order::iterated, [&](std::size_t k, double h) -> VectorXd {
           const Mechanism& made = other.by_mechanisms ? other.near->mechanism(k, h) : mechanism;
           VectorXd q = made.tree().q0, u = made.tree().u0;
-          const double change = sixth_order::points[k].k * h;
+          const double change = sixth_order::k_of(k) * h;
           if (v.kind == RunVariable::Kind::position) q[v.place] += change;
           if (v.kind == RunVariable::Kind::rate) u[v.place] += change;
           const Start start = closed_start(made, q, u);
@@ -56,7 +56,7 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
           return state;
         });
     tangents.of_state.col(static_cast<Eigen::Index>(j)) = slope.by;
-    // Of a smooth start both orders differ by h⁴; another assembly is about 1/h away.
+    // Of a smooth start the formulas differ by h⁴; another assembly is about 1/h away.
     if (!(slope.apart <= 1e-3 * (size / v.size + slope.by.cwiseAbs().maxCoeff())))
       tangents.broken.push_back("the start changes too abruptly with " +
                                 reading::in_quotes(v.name) + " for a derivative: within " +

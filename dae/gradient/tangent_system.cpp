@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 TangentSystem::TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand,
-                             VectorXd sizes, bool tangents_count)
+                             VectorXd sizes, double tangents_scale)
     : form_(form),
       tangents_(tangents),
       integrand_(integrand),
@@ -21,7 +21,7 @@ TangentSystem::TangentSystem(OdeForm& form, FormTangents& tangents, Functional* 
       directions_(static_cast<int>(sizes.size())),
       all_((n_ + extra()) * (1 + directions_)),
       sizes_(std::move(sizes)),
-      tangents_count_(tangents_count),
+      tangents_scale_(tangents_scale),
       before_(static_cast<std::size_t>(n_)) {}
 
 double TangentSystem::tolerance_factor() const {
@@ -31,9 +31,8 @@ double TangentSystem::tolerance_factor() const {
 double TangentSystem::scale(int i) const {
   if (i < n_) return form_.scale(i);
   const int k = i - n_ - extra();
-  if (!tangents_count_ || k < 0 || k >= n_ * directions_)
-    return std::numeric_limits<double>::infinity();
-  return form_.scale(k % n_) / sizes_[k / n_];
+  if (k < 0 || k >= n_ * directions_) return std::numeric_limits<double>::infinity();
+  return tangents_scale_ * form_.scale(k % n_) / sizes_[k / n_];
 }
 
 std::vector<double> TangentSystem::initial(const std::vector<double>& y0,

@@ -20,9 +20,10 @@ namespace momenta {
 class TangentSystem final : public OdeSystem {
  public:
   /// `integrand` null: no J. All must outlive it.
-  /// `sizes` of θ; `tangents_count`: in the norm of the error.
+  /// `sizes` of θ; `tangents_scale`: of Y in the norm of the error, beside that of y; infinity: it
+  /// does not count.
   TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand, Eigen::VectorXd sizes,
-                bool tangents_count);
+                double tangents_scale);
 
   int size() const override { return all_; }
   /// What rtol and atol are to be multiplied by.
@@ -74,7 +75,7 @@ class TangentSystem final : public OdeSystem {
   Functional* integrand_;
   int n_, directions_, all_;
   Eigen::VectorXd sizes_;
-  bool tangents_count_;
+  double tangents_scale_;
   bool corrected_stages_ = false;
   int looking_ = 0;  ///< depth
   SingularPassages passages_;

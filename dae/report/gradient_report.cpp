@@ -46,8 +46,8 @@ std::string gradient_in_words(const GradientResult& r) {
     }
   if (!differenced.empty())
     text += "\nBy " + reading::all_in_quotes(differenced) +
-            " the equations are differentiated by differences of neighbouring scenes, whose fourth "
-            "and sixth order agree to " +
+            " the equations are differentiated by differences of neighbouring scenes, which agree "
+            "to " +
             std::to_string(static_cast<int>(digits)) + " digits.";
   for (const std::string& remark : r.remarks) text += "\nRemark: " + remark + ".";
   return text;
