@@ -32,18 +32,21 @@ class Approach {
     between(t1, now_.data());
   }
   /// "; x leaves every bound near t = 1"; empty where nothing does.
-  std::string in_words(const EquationStart& start) const {
+  std::string in_words(const EquationStart& start, double rtol) const {
     constexpr double without_bound = 1e5;
+    // Errors of the run move the pole, by about a hundred tolerances.
+    const int digits = std::clamp(static_cast<int>(-std::log10(rtol)) - 2, 1, 6);
     for (const bool of_rate : {false, true})
       for (std::size_t j = 0; j < now_.size(); ++j) {
-        if (!start.appears[j] || !(t1_ > t0_)) continue;
+        const bool smooth = start.index_of[j] == 1, moves = start.appears[j] != 0;
+        if (!(of_rate ? moves && smooth : moves || smooth) || !(t1_ > t0_)) continue;
         const double size = std::abs(now_[j]), scale = file_.scales[j] + std::abs(file_.values[j]);
         const double growth = std::abs(now_[j] - before_[j]) / (t1_ - t0_) * (t1_ - file_.start);
         if (of_rate ? growth < without_bound * (size + scale)
                     : size < without_bound * scale || growth < without_bound * size)
           continue;
         return std::string("; ") + (of_rate ? "the rate of " : "") + file_.variables[j] +
-               " leaves every bound near t = " + compact(t1_, 6);
+               " leaves every bound near t = " + compact(t1_, digits);
       }
     return "";
   }
@@ -88,7 +91,7 @@ void integrate_piece(const EquationFile& file, const EquationStart& start,
   run.done = result.done;
   run.reason = interrupted   ? "interrupted"
                : result.done ? result.reason
-                             : result.reason + approach.in_words(start);
+                             : result.reason + approach.in_words(start, request.rtol);
   run.stopped_at = result.end_time;
   run.counters += result.counters;
   run.linear_solver = result.linear_solver;
@@ -161,6 +164,7 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
     if (!why.empty()) {
       run.done = false;
       run.reason = stop_sentence("ida", turns_.t, why);
+      run.stopped_at = turns_.t;
       run.last = next.values;
       return true;
     }
