@@ -138,21 +138,41 @@ double moved_by(const EquationFile& file, const EquationStart& start,
   return most;
 }
 
+/// Whether ∂F/∂y' is the same at the point and where all its rates turn round.
+bool is_linear_in_rates(const EquationFile& file, const ConsistentPoint& point) {
+  constexpr double same = 1e-9;
+  const Eigen::VectorXd turned = -point.ydot;
+  Slopes<double> here(file), there(file);
+  here.evaluate_at(file.start, point.y.data(), point.ydot.data());
+  there.evaluate_at(file.start, point.y.data(), turned.data());
+  for (std::size_t k = 0; k < here.entries().size(); ++k) {
+    const double a = here.values()[k], b = there.values()[k];
+    if (here.entries()[k].of_rate && !(std::abs(a - b) <= same * (std::abs(a) + std::abs(b))))
+      return false;
+  }
+  return true;
+}
+
 /// A guess of rates at which equations do not depend on them, y'² = y at y' = 0, has values changed
 /// in their stead, or has no start. Where other rates have one, and leave all values as they are:
-/// that start, or, where there are two, why it is none.
+/// that start, or, where there are two, why it is none. Rates that are given decide between them.
 ConsistentPoint with_other_rates(const EquationFile& file, const EquationStart& start,
                                  const Eigen::VectorXd& y, ConsistentPoint found) {
   constexpr double moved = 1e-6;
-  if (found.why.empty() && moved_by(file, start, found) < moved) return found;
+  const bool stays = found.why.empty() && moved_by(file, start, found) < moved;
+  if (stays && is_linear_in_rates(file, found)) return found;
   std::vector<ConsistentPoint> others;
   for (const double sign : {1.0, -1.0}) {
+    if (stays && others.empty()) {
+      others.push_back(found);
+      continue;
+    }
     Eigen::VectorXd rates(file.size());
     bool changed = false;
     for (int j = 0; j < file.size(); ++j) {
       const bool open = start.appears[at(j)] && file.rates[at(j)] == 0;
-      rates[j] = open ? sign * (std::abs(y[j]) + file.scales[at(j)]) / (file.end - file.start)
-                      : file.rates[at(j)];
+      const double size = (std::abs(y[j]) + file.scales[at(j)]) / (file.end - file.start);
+      rates[j] = !open ? file.rates[at(j)] : stays ? -found.ydot[j] : sign * size;
       changed |= open;
     }
     if (!changed) return found;

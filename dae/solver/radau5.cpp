@@ -38,8 +38,8 @@ constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
 /// Newton contracts this fast: the derivatives serve another step.
 constexpr double fast = 1e-3;
 /// What the start of a step misses of constraints is divided by the step's length, in λ of index 3
-/// twice: no sample of higher index takes a step shorter than this part of those around it, no last
-/// step of index 3 is shorter than `short_rest` of the one before.
+/// twice: no sample of higher index takes a step shorter than this part of those around it, and no
+/// last step is shorter than `short_rest` of the one before.
 constexpr double short_sample = 0.25, short_rest = 0.125;
 
 class Radau5 {
@@ -160,14 +160,15 @@ class Radau5 {
     return gauge != nullptr && gauge->impulse_count() > 0 ? gauge : nullptr;
   }
 
-  /// As far as weights tell it: multipliers that no norm sees are one worse than what it sees.
+  /// As far as weights tell it. Multipliers that no norm sees are one worse than what it sees;
+  /// alone they are told from q and u, and do not count.
   static int index_of(const DaeSystem& system) {
     int most = 0, least = 0;
     for (int k = 0; k < system.size(); ++k) {
       const int power = system.weight(k).power;
       most = std::max(most, power), least = std::min(least, power);
     }
-    return 1 + most - least;
+    return most > 0 ? 1 + most - least : 1;
   }
 
   double longest() const { return options_.max_step > 0 ? options_.max_step : span_; }
@@ -176,7 +177,7 @@ class Radau5 {
     if (options_.step > 0) {
       const FixedGrid grid(start_, options_.step);
       double t1 = grid.next(counters_.steps, end);
-      if (index_ > 2 && end - t1 < short_rest * options_.step) t1 = end;
+      if (index_ > 1 && end - t1 < short_rest * options_.step) t1 = end;
       changed_ |= grid.length(t, t1) != h_;
       h_ = grid.length(t, t1);
       return t1;
@@ -184,7 +185,7 @@ class Radau5 {
     double t1 = t + h_;
     if (t + 1.01 * h_ >= end)
       t1 = end;
-    else if (index_ > 2 && t + (1 + short_rest) * h_ > end)
+    else if (index_ > 1 && t + (1 + short_rest) * h_ > end)
       t1 = t + 0.5 * (end - t);
     if (t1 != t + h_) changed_ = true;
     if (t1 == end || t1 != t + h_) h_ = t1 - t;
@@ -299,10 +300,10 @@ class Radau5 {
     error_.forget();
     // The cubic, and that of the step before, whose stages the trial of this step has left.
     for (std::size_t i = 0; i < 3; ++i) {
-      const double at = from + c[i] * h;
+      const double part = (early ? from - t0_ : 0) / done_ + c[i] * h / done_;
       for (std::size_t k = 0; k < n_; ++k)
-        sample_[i][k] = at < t0_ ? polynomial(trial_, k, (at - earlier_t_) / before)
-                                 : y0_[k] - start[k] + polynomial(z_, k, (at - t0_) / done_);
+        sample_[i][k] = part < 0 ? polynomial(trial_, k, c[i] * h / before)
+                                 : y0_[k] - start[k] + polynomial(z_, k, part);
     }
     return (*look_)(from, h, gamma / done_, start.data(), rate.data(), norm, error_.fraction(),
                     sample_, y, ydot);
