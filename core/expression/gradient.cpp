@@ -28,15 +28,30 @@ class Backward {
  private:
   int& of(int y) { return bar_[static_cast<std::size_t>(y)]; }
   bool is(int i, double x) const { return tape_[i].operation == O::number && tape_[i].number == x; }
-  /// Signs go outward: where two of them meet, or a sum is taken, they are gone.
+  /// Whether it is zero but where it is chosen.
+  bool is_part(const Instruction& in) const {
+    return in.operation == O::choice && (is(in.b, 0) || is(in.c, 0));
+  }
+  /// Signs go outward: where two of them meet, or a sum is taken, they are gone. So do choices: of
+  /// what is not chosen, sqrt(x) in if(x > 0, sqrt(x), 0), there may be no slope.
   int times(int a, int b) {
     if (is(a, 1)) return b;
+    if (is(a, 0)) return a;
+    if (const Instruction in = tape_[a]; is_part(in)) {
+      const int chosen = times(in.b, b);
+      return tape_.add(O::choice, in.a, chosen, times(in.c, b));
+    }
     if (is(b, 1)) return a;
     if (tape_[a].operation == O::negative) return negative(times(tape_[a].a, b));
     if (tape_[b].operation == O::negative) return negative(times(a, tape_[b].a));
     return tape_.add(O::multiply, a, b);
   }
   int over(int a, int b) {
+    if (is(a, 0)) return a;
+    if (const Instruction in = tape_[a]; is_part(in)) {
+      const int chosen = over(in.b, b);
+      return tape_.add(O::choice, in.a, chosen, over(in.c, b));
+    }
     if (tape_[a].operation == O::negative) return negative(over(tape_[a].a, b));
     return tape_.add(O::divide, a, b);
   }

@@ -8,12 +8,24 @@ namespace momenta {
 using formula::Operation;
 
 Expression Switches::held(const Expression& formula) {
+  const auto& tape = formula.tape();
+  const auto is_jump = [](Operation o) {
+    return o == Operation::less || o == Operation::less_equal || o == Operation::sign ||
+           o == Operation::floor;
+  };
+  std::vector<bool> turns(tape.size());  // whether it is in what a jump turns at
+  for (std::size_t k = tape.size(); k-- > 0;)
+    if (turns[k] || is_jump(tape[k].operation))
+      if (tape[k].operation != Operation::variable)
+        for (const int of : {tape[k].a, tape[k].b, tape[k].c})
+          if (of >= 0) turns[static_cast<std::size_t>(of)] = true;
   std::vector<int> place;
-  for (formula::Instruction in : formula.tape()) {
+  for (formula::Instruction in : tape) {
+    const bool held = is_jump(in.operation) || turns[place.size()];
     for (int* of : {&in.a, &in.b, &in.c})
       if (in.operation != Operation::variable && *of >= 0)
         *of = place[static_cast<std::size_t>(*of)];
-    switch (in.operation) {
+    switch (held ? in.operation : Operation::number) {
       case Operation::less:
       case Operation::less_equal:
       case Operation::sign:

@@ -1,11 +1,16 @@
 #pragma once
-// The switches of formulas: what comparisons, sign, abs, floor, min and max turn at. With each of
-// them held as it is, a formula is smooth: it has a variable where it had the switch,
+// The switches of formulas: what comparisons, sign and floor turn at. With each of them held as it
+// is, a formula has no jump: it has a variable where it had the switch,
 //
-//   a < b → m,   sign(a) → m,   floor(a) → m,   abs(a) → m a,   min(a, b), max(a, b) → if(m, b, a),
+//   a < b → m,   sign(a) → m,   floor(a) → m,
 //
-// and it turns where its argument, a − b or a, leaves what the mode m is of. a == b and a != b,
-// which hold or fail at single places, stay as they are.
+// and it turns where its argument, a − b or a, leaves what the mode m is of. Corners in arguments
+// are switches too, so that arguments are smooth and no zero is between two looks,
+//
+//   abs(a) → m a,   min(a, b), max(a, b) → if(m, b, a).
+//
+// Elsewhere corners stay as they are: beside them formulas may have no values, sqrt(abs(x)). So do
+// a == b and a != b, which hold or fail at single places.
 
 #include <momenta/core/expression/expression.h>
 #include <momenta/core/expression/tape.h>
@@ -31,7 +36,7 @@ class Switches {
   const Expression& argument(std::size_t k) const { return all_[k].argument; }
   /// m at a value of the argument.
   double mode(std::size_t k, double argument) const;
-  /// Above zero where m is the mode, smooth, below zero where it is not.
+  /// Above zero where m is the mode, below zero where it is not.
   double margin(std::size_t k, double mode, double argument) const;
   /// The mode behind a zero of the margin, near which the argument has this value.
   double turned(std::size_t k, double mode, double argument) const;

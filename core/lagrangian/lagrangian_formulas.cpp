@@ -1,4 +1,4 @@
-#include <momenta/core/expression/switches.h>
+#include <momenta/core/expression/function_names.h>
 #include <momenta/core/lagrangian/lagrangian_formulas.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/text/near_name.h>
@@ -110,17 +110,28 @@ class Reader {
   }
   /// L with jumps or corners in q̇ has no momenta there.
   Expression smooth_in_rates(const FormulaSpec& formula, const std::string& who) {
+    using O = formula::Operation;
     Expression read = this->read(formula, who);
-    Switches switches(static_cast<int>(all_.names.size()));
-    switches.held(read);
-    for (std::size_t k = 0; k < switches.size(); ++k)
-      for (const int v : switches.argument(k).variables())
-        if (v >= n_ && v < 2 * n_)
-          throw SceneError(scene_.where(formula.at) + who + ": its " + in_quotes(switches.name(k)) +
-                           " turns with the rate " +
-                           in_quotes(all_.names[static_cast<std::size_t>(v)]) +
-                           ", expected a formula that is smooth in the rates; friction and the "
-                           "like belong to force");
+    std::vector<int> rate;  // of each value on the tape one that it takes; -1: none
+    for (const formula::Instruction& in : read.tape()) {
+      int& taken = rate.emplace_back(-1);
+      if (in.operation == O::variable) {
+        if (in.a >= n_ && in.a < 2 * n_) taken = in.a;
+        continue;
+      }
+      for (const int of : {in.a, in.b, in.c})
+        if (of >= 0) taken = std::max(taken, rate[static_cast<std::size_t>(of)]);
+      const bool turns = in.operation == O::less || in.operation == O::less_equal ||
+                         in.operation == O::sign || in.operation == O::floor ||
+                         in.operation == O::abs || in.operation == O::min || in.operation == O::max;
+      if (!turns || taken < 0) continue;
+      const std::string_view name = formula::function_name(in.operation);
+      throw SceneError(scene_.where(formula.at) + who + ": its " +
+                       in_quotes(name.empty() ? "if" : name) + " turns with the rate " +
+                       in_quotes(all_.names[static_cast<std::size_t>(taken)]) +
+                       ", expected a formula that is smooth in the rates; friction and the "
+                       "like belong to force");
+    }
     return read;
   }
   void expect_equation(const Expression& equation, const LagrangianSpec::Constraint& c,

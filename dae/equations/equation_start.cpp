@@ -6,7 +6,7 @@
 //
 // c of the equations that hang together with x_j. A variable of the pendulum with Φ = 0: positions
 // 1, velocities 2, λ 3. Where the Jacobian is singular: the differentiations after which x_j' is
-// determined.
+// determined, a little behind the start, which may have zeros in particular.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/dense/singular_values.h>
@@ -102,8 +102,8 @@ std::vector<int> differentiations_around(const EquationStart& start) {
   return around;
 }
 
-std::vector<int> indices_of(const structure::Signature& s, const EquationStart& start) {
-  const int n = s.size(), index = std::max(start.point.found.index, 1);
+std::vector<int> indices_of(const EquationFile& file, const EquationStart& start) {
+  const int n = file.size(), index = std::max(start.point.found.index, 1);
   std::vector<int> of(at(n), 1);
   if (start.jacobian.regular(n)) {
     const std::vector<int> around = differentiations_around(start);
@@ -111,7 +111,12 @@ std::vector<int> indices_of(const structure::Signature& s, const EquationStart& 
       of[at(j)] = std::clamp(1 + around[at(j)] - start.offsets.variable[at(j)], 1, index);
     return of;
   }
-  const auto& levels = start.point.found.levels;
+  constexpr double behind = 0.01;
+  const double step = behind * std::min(start.time_scale, file.end - file.start);
+  const ConsistentPoint near = consistent_point(
+      curve_system(file), file.start + step, start.point.y + step * start.point.ydot,
+      start.point.ydot, start_scales(file, start.appears), start.time_scale);
+  const auto& levels = (near.found.index == index ? near : start.point).found.levels;
   for (int j = 0; j < n; ++j) {
     const auto level = std::find_if(levels.begin(), levels.end(), [&](const ArrayLevel& l) {
       return !l.determined.empty() && l.determined[at(j)];
@@ -133,27 +138,48 @@ double moved_by(const EquationFile& file, const EquationStart& start,
   return most;
 }
 
+/// Whether ∂F/∂y' is the same at the point and where all its rates turn round.
+bool is_linear_in_rates(const EquationFile& file, const ConsistentPoint& point) {
+  constexpr double same = 1e-9;
+  const Eigen::VectorXd turned = -point.ydot;
+  Slopes<double> here(file), there(file);
+  here.evaluate_at(file.start, point.y.data(), point.ydot.data());
+  there.evaluate_at(file.start, point.y.data(), turned.data());
+  for (std::size_t k = 0; k < here.entries().size(); ++k) {
+    const double a = here.values()[k], b = there.values()[k];
+    if (here.entries()[k].of_rate && !(std::abs(a - b) <= same * (std::abs(a) + std::abs(b))))
+      return false;
+  }
+  return true;
+}
+
 /// A guess of rates at which equations do not depend on them, y'² = y at y' = 0, has values changed
-/// in their stead. Where other rates leave all values as they are: that start, or, where there are
-/// two, why it is none.
+/// in their stead, or has no start. Where other rates have one, and leave all values as they are:
+/// that start, or, where there are two, why it is none. Rates that are given decide between them.
 ConsistentPoint with_other_rates(const EquationFile& file, const EquationStart& start,
                                  const Eigen::VectorXd& y, ConsistentPoint found) {
   constexpr double moved = 1e-6;
-  if (found.why.empty() && moved_by(file, start, found) < moved) return found;
+  const bool stays = found.why.empty() && moved_by(file, start, found) < moved;
+  if (stays && is_linear_in_rates(file, found)) return found;
   std::vector<ConsistentPoint> others;
   for (const double sign : {1.0, -1.0}) {
+    if (stays && others.empty()) {
+      others.push_back(found);
+      continue;
+    }
     Eigen::VectorXd rates(file.size());
     bool changed = false;
     for (int j = 0; j < file.size(); ++j) {
       const bool open = start.appears[at(j)] && file.rates[at(j)] == 0;
-      rates[j] = open ? sign * (std::abs(y[j]) + file.scales[at(j)]) / (file.end - file.start)
-                      : file.rates[at(j)];
+      const double size = (std::abs(y[j]) + file.scales[at(j)]) / (file.end - file.start);
+      rates[j] = !open ? file.rates[at(j)] : stays ? -found.ydot[j] : sign * size;
       changed |= open;
     }
     if (!changed) return found;
     ConsistentPoint other = consistent_point(curve_system(file), file.start, y, rates,
                                              start_scales(file, start.appears), start.time_scale);
-    if (other.why.empty() && moved_by(file, start, other) < moved) others.push_back(other);
+    if (other.why.empty() && (!found.why.empty() || moved_by(file, start, other) < moved))
+      others.push_back(other);
   }
   if (others.empty()) return found;
   for (int j = 0; j < file.size(); ++j) {
@@ -220,7 +246,7 @@ EquationStart equation_start(const EquationFile& file) {
   }
   start.jacobian =
       system_jacobian(file, start.offsets, file.start, start.point.y, start.point.ydot);
-  start.index_of = indices_of(signature, start);
+  start.index_of = indices_of(file, start);
   return start;
 }
 

@@ -2,7 +2,8 @@
 // A file of equations as integrators of DAEs see it.
 
 #include <momenta/dae/equations/equation_start.h>
-#include <momenta/dae/solver/filtered_error.h>
+#include <momenta/dae/solver/structured_system.h>
+#include <momenta/dae/solver/system.h>
 
 namespace momenta {
 
@@ -11,7 +12,7 @@ namespace momenta {
 /// of index 2 tests variables of index 1 with a derivative, and where nothing that hangs together
 /// with a variable of index 2 would be tested, that one; variables of index 2 without a derivative
 /// are left out of Newton's norm.
-class EquationSystem final : public DaeSystem, public OfIndexTwo {
+class EquationSystem final : public DaeSystem, public StructuredSystem {
  public:
   /// Both must outlive it. @pre start.point.why is empty
   EquationSystem(const EquationFile& file, const EquationStart& start);
@@ -22,7 +23,8 @@ class EquationSystem final : public DaeSystem, public OfIndexTwo {
   const JacobianPattern& pattern() const override { return pattern_; }
   bool start(double t, double* y, double* ydot) override;
   bool differential(int i) const override { return tested_[static_cast<std::size_t>(i)]; }
-  bool is_of_index_two() const override { return start_.point.found.index == 2; }
+  int index() const override { return start_.point.found.index; }
+  bool is_regular() const override { return start_.jacobian.regular(size()); }
   double scale(int i) const override;
   Weight weight(int i) const override;
 

@@ -23,8 +23,9 @@ constexpr double same_value = 1000;
 /// What the last step says of a run that cannot go on: a value, or a rate, without bound.
 class Approach {
  public:
-  explicit Approach(const EquationFile& file)
-      : file_(file), before_(file.variables.size()), now_(before_.size()) {}
+  /// `begun`: when the run began.
+  Approach(const EquationFile& file, double begun)
+      : file_(file), begun_(begun), before_(file.variables.size()), now_(before_.size()) {}
 
   void step(double t0, double t1, const Interpolant& between) {
     t0_ = t0, t1_ = t1;
@@ -32,24 +33,28 @@ class Approach {
     between(t1, now_.data());
   }
   /// "; x leaves every bound near t = 1"; empty where nothing does.
-  std::string in_words(const EquationStart& start) const {
+  std::string in_words(const EquationStart& start, double rtol) const {
     constexpr double without_bound = 1e5;
+    // Errors of the run move the pole, by about a hundred tolerances.
+    const int digits = std::clamp(static_cast<int>(-std::log10(rtol)) - 2, 1, 6);
     for (const bool of_rate : {false, true})
       for (std::size_t j = 0; j < now_.size(); ++j) {
-        if (!start.appears[j] || !(t1_ > t0_)) continue;
+        const bool smooth = start.index_of[j] == 1, moves = start.appears[j] != 0;
+        if (!(of_rate ? moves && smooth : moves || smooth) || !(t1_ > t0_)) continue;
         const double size = std::abs(now_[j]), scale = file_.scales[j] + std::abs(file_.values[j]);
-        const double growth = std::abs(now_[j] - before_[j]) / (t1_ - t0_) * (t1_ - file_.start);
+        const double growth = std::abs(now_[j] - before_[j]) / (t1_ - t0_) * (t1_ - begun_);
         if (of_rate ? growth < without_bound * (size + scale)
                     : size < without_bound * scale || growth < without_bound * size)
           continue;
         return std::string("; ") + (of_rate ? "the rate of " : "") + file_.variables[j] +
-               " leaves every bound near t = " + compact(t1_, 6);
+               " leaves every bound near t = " + compact(t1_, digits);
       }
     return "";
   }
 
  private:
   const EquationFile& file_;
+  double begun_;
   std::vector<double> before_, now_;
   double t0_ = 0, t1_ = 0;
 };
@@ -77,7 +82,7 @@ void integrate_piece(const EquationFile& file, const EquationStart& start,
     return true;
   };
   bool interrupted = false;
-  Approach approach(file);
+  Approach approach(file, run.start);
   observer.step = [&](double t0, double t1, const Interpolant& between) {
     approach.step(t0, t1, between);
     interrupted = request.going_on && !request.going_on(t1);
@@ -88,7 +93,7 @@ void integrate_piece(const EquationFile& file, const EquationStart& start,
   run.done = result.done;
   run.reason = interrupted   ? "interrupted"
                : result.done ? result.reason
-                             : result.reason + approach.in_words(start);
+                             : result.reason + approach.in_words(start, request.rtol);
   run.stopped_at = result.end_time;
   run.counters += result.counters;
   run.linear_solver = result.linear_solver;
@@ -150,26 +155,51 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
     last.which.insert(last.which.end(), turns_.which.begin(), turns_.which.end());
     run.switchings += turns_.t > run.start;
     held_.start = turns_.t;
-    EquationFile written = file_;
-    EquationFile& next = back ? written : held_;
-    if (back)
-      written.start = held_.start, written.values = held_.values, written.rates = held_.rates,
-      written.held = held_.held;
-    else
-      for (std::size_t i = 0; i < turns_.which.size(); ++i) mode(turns_.which[i]) = turns_.modes[i];
-    const std::string why = begin_anew(next, start);
-    if (!why.empty()) {
-      run.done = false;
-      run.reason = stop_sentence("ida", turns_.t, why);
-      run.last = next.values;
+    if (back) {
+      if (!as_written(spent(), run))
+        return stop(turns_.t,
+                    "no consistent start where " + in_words(turns_.which.front()) + " turns", run);
+      if (!run.done && run.reason != "interrupted")
+        run.reason += "; from t = " + compact(turns_.t, 6) + " on " +
+                      in_words(turns_.which.front()) +
+                      " turns back and forth: expected a law without jumps there";
       return true;
     }
-    if (!back) continue;
-    integrate_piece(written, start, request_, {}, spent(), run);
-    if (!run.done && run.reason != "interrupted")
-      run.reason += "; from t = " + compact(turns_.t, 6) + " on " + in_words(turns_.which.front()) +
-                    " turns back and forth: expected a law without jumps there";
+    for (std::size_t i = 0; i < turns_.which.size(); ++i) mode(turns_.which[i]) = turns_.modes[i];
+    const std::string why = begin_anew(start);
+    if (!why.empty()) return as_written(spent(), run) || stop(turns_.t, why, run);
+  }
+  if (run.done || run.reason == "interrupted" || run.reason.rfind("time limit", 0) == 0)
     return true;
+  const EquationRun stopped = run;
+  held_.start = run.stopped_at;
+  held_.values = run.last;
+  if (!as_written(spent(), run) || (!run.done && run.stopped_at <= stopped.stopped_at + tolerance_))
+    run = stopped;
+  return true;
+}
+
+bool SwitchedRun::stop(double t, const std::string& why, EquationRun& run) {
+  run.done = false;
+  run.reason = stop_sentence("ida", t, why);
+  run.stopped_at = t;
+  run.last = held_.values;
+  return true;
+}
+
+bool SwitchedRun::as_written(double spent_s, EquationRun& run) {
+  EquationFile written = file_;
+  written.start = held_.start;
+  written.values = held_.values;
+  written.rates = held_.rates;
+  written.held = held_.held;
+  try {
+    const EquationStart start = equation_start(written);
+    if (!start.point.why.empty() || start.point.found.index > 2 || jumping(start) >= 0)
+      return false;
+    integrate_piece(written, start, request_, {}, spent_s, run);
+  } catch (const SceneError&) {
+    return false;
   }
   return true;
 }
@@ -235,10 +265,10 @@ void SwitchedRun::find_turns(double t0, double t1, const Interpolant& between) {
   if (turns_.t >= request_.end - 10 * tolerance_) turns_.which.clear();
 }
 
-std::string SwitchedRun::begin_anew(EquationFile& file, EquationStart& start) const {
+std::string SwitchedRun::begin_anew(EquationStart& start) {
   const std::string where = in_words(turns_.which.front());
   try {
-    start = equation_start(file);
+    start = equation_start(held_);
   } catch (const SceneError& e) {
     return e.what();
   }
@@ -247,20 +277,27 @@ std::string SwitchedRun::begin_anew(EquationFile& file, EquationStart& start) co
   if (start.point.found.index > 2)
     return "where " + where + " turns the index becomes " +
            std::to_string(start.point.found.index) + ", expected up to 2";
-  for (int j = 0; j < file.size(); ++j) {
+  if (const int j = jumping(start); j >= 0) {
     const auto at = static_cast<std::size_t>(j);
-    const double from = file.values[at], to = start.point.y[j];
-    if (!start.appears[at] || start.index_of[at] > 1 ||
-        std::abs(to - from) <=
-            same_value * (request_.rtol * std::abs(from) + request_.atol * file.scales[at]))
-      continue;
-    return where + " makes " + file.variables[at] + " jump from " + compact(from, 6) + " to " +
-           compact(to, 6) + ", where its rate has no value; expected no jump in what ties " +
-           "variables that have rates";
+    return where + " makes " + held_.variables[at] + " jump from " + compact(held_.values[at], 6) +
+           " to " + compact(start.point.y[j], 6) +
+           ", where its rate has no value; expected no jump in what ties variables that have rates";
   }
-  file.values.assign(start.point.y.begin(), start.point.y.end());
-  file.rates.assign(start.point.ydot.begin(), start.point.ydot.end());
+  held_.values.assign(start.point.y.begin(), start.point.y.end());
+  held_.rates.assign(start.point.ydot.begin(), start.point.ydot.end());
   return "";
+}
+
+int SwitchedRun::jumping(const EquationStart& start) const {
+  for (int j = 0; j < held_.size(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const double from = held_.values[at];
+    if (start.appears[at] && start.index_of[at] == 1 &&
+        std::abs(start.point.y[j] - from) >
+            same_value * (request_.rtol * std::abs(from) + request_.atol * held_.scales[at]))
+      return j;
+  }
+  return -1;
 }
 
 std::string SwitchedRun::in_words(std::size_t k) const {

@@ -1,11 +1,12 @@
 #pragma once
-// A run in pieces between the switches of a file's formulas: comparisons, sign, abs, floor, min and
-// max (core/expression/switches.h). In a piece each is held in its mode, so that the equations are
-// smooth and BDF's polynomials reach across no jump. Where a switch turns, by the dense output, the
-// piece ends; the next one begins from a consistent start in the new mode.
+// A run in pieces between the switches of a file's formulas: comparisons, sign and floor
+// (core/expression/switches.h). In a piece each is held in its mode, so that BDF's polynomials
+// reach across no jump. Where a switch turns, by the dense output, the piece ends; the next one
+// begins from a consistent start in the new mode.
 //
-// Where the new mode turns back at once, the two sides drive against each other; the run then goes
-// on with the formulas as they are written.
+// Where the new mode turns back at once, the two sides drive against each other; where a mode ends
+// short of its switch, formulas may have no values behind it: log(x) in if(x > 0, log(x), 0). The
+// run then goes on with the formulas as they are written.
 
 #include <momenta/core/expression/switches.h>
 #include <momenta/dae/equations/equation_run.h>
@@ -48,9 +49,15 @@ class SwitchedRun {
   void find_turns(double t0, double t1, const Interpolant& between);
   /// To a turn: true; or to where the run ends. `spent_s`: CPU time before.
   bool piece(const EquationStart& start, double spent_s, EquationRun& run);
-  /// A start where the last piece ended. One sentence where there is none, or where values would
-  /// jump.
-  std::string begin_anew(EquationFile& file, EquationStart& start) const;
+  /// A start of held_ where the last piece ended. One sentence where there is none, or where values
+  /// would jump.
+  std::string begin_anew(EquationStart& start);
+  /// A variable with a rate that would jump from held_'s value to that of the start; −1: none does.
+  int jumping(const EquationStart& start) const;
+  /// On from there with the formulas as they are written. False: they have no start there.
+  bool as_written(double spent_s, EquationRun& run);
+  /// What the run ends with at t; true.
+  bool stop(double t, const std::string& why, EquationRun& run);
   /// "'if' of equation 2, 'z = if(t < 1, x, 2*x)'".
   std::string in_words(std::size_t k) const;
 

@@ -107,14 +107,22 @@ std::vector<double> DaeForm::initial(const Start& start) {
   return y;
 }
 
+namespace {
+/// Why there is no u of M u + prescribed part = p at (t, q); empty: there is one.
+std::string without_rates(const std::string& form, const Mechanism& mechanism,
+                          Evaluation<double>& e, double t, const double* q) {
+  const std::string singular = mass_without_inverse(mechanism, e, t, q);
+  if (singular.empty()) return "";
+  return "'" + form + "' takes rates from M u = p, and " + singular +
+         "; expected a form whose rates obey the " + loop_word(mechanism) + "s, as momentum-index2";
+}
+}  // namespace
+
 bool DaeForm::start(double t, double* y, double* ydot) {
   if (unknowns_ == Unknowns::momenta && layout_.m > 0)
-    if (const std::string singular =
-            mass_without_inverse(mechanism_, *plain_.e, start_.t, start_.q.data());
-        !singular.empty())
-      return fail("'" + name_ + "' takes rates from M u = p, and " + singular +
-                  "; expected a form whose rates obey the " + loop_word(mechanism_) +
-                  "s, as momentum-index2");
+    if (std::string none = without_rates(name_, mechanism_, *plain_.e, start_.t, start_.q.data());
+        !none.empty())
+      return fail(std::move(none));
   const auto y0 = initial(start_);
   std::copy(y0.begin(), y0.end(), y);
   std::copy_n(y + layout_.s(), softened_about_.size(), softened_about_.begin());
@@ -366,7 +374,7 @@ bool DaeForm::open_rates(double t, const double* y, double* u) {
   TreeFactor factor(pattern, layout_.nv);
   e.place(t, y);
   e.mass_entries(mass.data());
-  if (factor.factor(mass) >= 0) return false;
+  if (factor.factor(mass) >= 0) return fail(without_rates(name_, mechanism_, e, t, y));
   e.move(nullptr);
   e.momenta(nullptr, u);  // what drives prescribe
   for (int i = 0; i < layout_.nv; ++i) u[i] = y[layout_.x() + i] - u[i];

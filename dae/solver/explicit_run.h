@@ -94,7 +94,7 @@ class ExplicitRun {
       const long attempts = result_.counters.steps + result_.counters.rejected;
       if (attempts >= options_.max_steps)
         return stop("the limit of " + std::to_string(options_.max_steps) + " steps is reached");
-      if (pace.is_hopeless(attempts, t_)) return stop(pace.in_words());
+      if (!(cpu_.seconds() > 0) && pace.is_hopeless(attempts, t_)) return stop(pace.in_words());
       if (cpu_.exceeded()) {
         result_.reason = time_limit_sentence(Tableau::name, cpu_.seconds(), t_);
         return false;

@@ -37,8 +37,8 @@ double FilteredError::norm(const double* e, const double* weights, double h) {
   for (std::size_t i = 0; i < n_; ++i) {
     if (!system_.differential(static_cast<int>(i))) continue;
     const int power = system_.weight(static_cast<int>(i)).power;
-    const double error = power > 0 ? std::pow(h, power) * e[i] : filtered_[i];
-    sum += weights[i] * error * (weights[i] * error);
+    const double error = weights[i] * std::pow(h, power) * filtered_[i];
+    sum += error * error;
   }
   return std::sqrt(sum / static_cast<double>(n_));
 }

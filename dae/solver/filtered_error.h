@@ -6,9 +6,8 @@
 //
 //   J(c)⁻¹ c ∂F/∂y' e,      J(c) = ∂F/∂y + c ∂F/∂y',
 //
-// and is what is tested of variables of weight power 0. A tested variable of power k ≥ 1 counts as
-// it is, h^k times. Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems
-// in Differential-Algebraic Equations, ch. 5.
+// and is what is tested, of a variable of weight power k h^k times. Source: Brenan, Campbell,
+// Petzold, Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
 
 #include <momenta/dae/solver/newton_matrix.h>
 
@@ -16,13 +15,6 @@
 #include <vector>
 
 namespace momenta {
-
-/// A mixin of a DaeSystem whose errors may be of this kind.
-class OfIndexTwo {
- public:
-  virtual ~OfIndexTwo() = default;
-  virtual bool is_of_index_two() const = 0;
-};
 
 class FilteredError {
  public:

@@ -19,6 +19,7 @@
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/rounding_floor.h>
+#include <momenta/dae/solver/structured_system.h>
 #include <momenta/dae/solver/sundials_handles.h>
 
 #include <algorithm>
@@ -99,8 +100,8 @@ class Ida {
     begin_y_.assign(y_.data(), y_.data() + y_.size());
     begin_ydot_.assign(ydot_.data(), ydot_.data() + ydot_.size());
     matrix_ = std::make_unique<IdaMatrix>(system_, context_, y_);
-    const auto* of_index = dynamic_cast<OfIndexTwo*>(&system_);
-    if (of_index != nullptr && of_index->is_of_index_two()) {
+    const auto* structure = dynamic_cast<StructuredSystem*>(&system_);
+    if (structure != nullptr && structure->index() == 2) {
       filtered_.emplace(system_);
       // IDA asks for this norm for error tests alone; the vectors it makes are copies of y.
       static_cast<N_Vector>(y_)->ops->nvwrmsnormmask = error_norm;

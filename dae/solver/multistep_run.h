@@ -59,7 +59,8 @@ class MultistepRun {
       if (count >= options_.max_steps)
         return stop(result,
                     "the limit of " + std::to_string(options_.max_steps) + " steps is reached");
-      if (pace.is_hopeless(count, t_)) return stop(result, pace.in_words());
+      if (!(cpu_.seconds() > 0) && pace.is_hopeless(count, t_))
+        return stop(result, pace.in_words());
       if (cpu_.exceeded()) {
         result.reason = time_limit_sentence(method_.name(), cpu_.seconds(), t_);
         return false;

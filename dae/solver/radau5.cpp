@@ -4,9 +4,10 @@
 // Local error and its norm: radau5_error.h. Step: options.step, without error control, where given;
 // else radau5_control.h. Gauge reset: radau5_gauge.h. Newton's corrections that shrink no more are
 // rounding where they leave the motion as it is. Dense output: the collocation cubic between steps;
-// a sample is a step of its own from the last step's start (radau5_look.h); where its iteration
-// does not converge, and early in the step for variables of higher index, the cubic. Looking on
-// counts nothing and changes nothing.
+// a sample is a step of its own from the last step's start (radau5_look.h), or, early in a step of
+// equations of higher index, from the start before; where its iteration does not converge, the
+// cubic. Variables of index 3 are of order 2 in either, and the cubic's do not have the errors of
+// velocities over the length of a step. Looking on counts nothing and changes nothing.
 //
 // Order on y, on variables of index 2, of index 3: 5, 3 in index-2 systems; 4, 3, 2 in those of
 // index 3. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4, VII.6;
@@ -20,6 +21,7 @@
 #include <momenta/dae/solver/radau5_error.h>
 #include <momenta/dae/solver/radau5_gauge.h>
 #include <momenta/dae/solver/radau5_look.h>
+#include <momenta/dae/solver/structured_system.h>
 
 #include <limits>
 #include <memory>
@@ -35,11 +37,10 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
 /// Newton contracts this fast: the derivatives serve another step.
 constexpr double fast = 1e-3;
-/// Shortenings of a step, each with fresh derivatives, behind which Newton's method takes those of
-/// all stages; steps in a row that needed it, behind which nothing else is tried.
-constexpr int shortenings = 4, needed_always = 3;
-/// No last step of index 3 is shorter than this part of the one before: see cubic_is_better().
-constexpr double short_rest = 0.125;
+/// What the start of a step misses of constraints is divided by the step's length, in λ of index 3
+/// twice: no sample of higher index takes a step shorter than this part of those around it, and no
+/// last step is shorter than `short_rest` of the one before.
+constexpr double short_sample = 0.25, short_rest = 0.125;
 
 class Radau5 {
  public:
@@ -50,12 +51,12 @@ class Radau5 {
         span_(span),
         error_(system, gauge_, options, span),
         n_(static_cast<std::size_t>(system.size())),
-        power_(powers_of(system)) {
-    for (auto* v : {&y_, &ydot_, &y0_, &ydot0_}) v->resize(n_);
+        index_(index_of(system)),
+        structure_(dynamic_cast<const StructuredSystem*>(&system)) {
+    for (auto* v : {&y_, &ydot_, &y0_, &ydot0_, &earlier_y_, &earlier_ydot_}) v->resize(n_);
     for (auto* z : {&z_, &trial_, &sample_})
       for (auto& v : *z) v.resize(n_);
     if (gauge_ != nullptr) stages_in_gauge_.emplace(*gauge_);
-    for (const int power : power_) of_index_three_ |= power > 1;
   }
 
   static const char* name() { return "radau5"; }
@@ -71,6 +72,8 @@ class Radau5 {
 
   void initialise() {
     stages_ = std::make_unique<Stages>(system_);
+    if (structure_ != nullptr && !structure_->is_regular())
+      whole_ = std::make_unique<WholeStages>(system_);
     factors_ = std::make_unique<Factors>(system_.size(), system_.pattern());
     if (options_.step > 0) {
       h_ = options_.step;
@@ -92,6 +95,9 @@ class Radau5 {
       if (!first_) stages_in_gauge_->shift(y_.data(), t0_, done_, y0_, z_);
       gauge_->reset(t, y_.data(), ydot_.data());
     }
+    earlier_t_ = first_ ? t : t0_;
+    earlier_y_.swap(y0_);
+    earlier_ydot_.swap(ydot0_);
     y0_ = y_;
     ydot0_ = ydot_;
     t_ = t;
@@ -123,12 +129,11 @@ class Radau5 {
       std::copy(y_.begin(), y_.end(), y);
       std::copy(ydot_.begin(), ydot_.end(), ydot);
     } else {
-      const double part = (t - t0_) / done_;
       const bool stepped = step_to(t, y, ydot);
       for (std::size_t k = 0; k < n_; ++k) {
-        if (stepped && !cubic_is_better(power_[k], part)) continue;
-        y[k] = y0_[k] + polynomial(z_, k, part);
-        ydot[k] = slope(z_, k, part) / done_;
+        if (stepped && system_.weight(static_cast<int>(k)).power < 2) continue;
+        y[k] = y0_[k] + polynomial(z_, k, (t - t0_) / done_);
+        ydot[k] = slope(z_, k, (t - t0_) / done_) / done_;
       }
     }
     return true;
@@ -155,13 +160,24 @@ class Radau5 {
     return gauge != nullptr && gauge->impulse_count() > 0 ? gauge : nullptr;
   }
 
+  /// As far as weights tell it. Multipliers that no norm sees are one worse than what it sees;
+  /// alone they are told from q and u, and do not count.
+  static int index_of(const DaeSystem& system) {
+    int most = 0, least = 0;
+    for (int k = 0; k < system.size(); ++k) {
+      const int power = system.weight(k).power;
+      most = std::max(most, power), least = std::min(least, power);
+    }
+    return most > 0 ? 1 + most - least : 1;
+  }
+
   double longest() const { return options_.max_step > 0 ? options_.max_step : span_; }
 
   double step_end(double t, double end) {
     if (options_.step > 0) {
       const FixedGrid grid(start_, options_.step);
       double t1 = grid.next(counters_.steps, end);
-      if (of_index_three_ && end - t1 < short_rest * options_.step) t1 = end;
+      if (index_ > 1 && end - t1 < short_rest * options_.step) t1 = end;
       changed_ |= grid.length(t, t1) != h_;
       h_ = grid.length(t, t1);
       return t1;
@@ -169,7 +185,7 @@ class Radau5 {
     double t1 = t + h_;
     if (t + 1.01 * h_ >= end)
       t1 = end;
-    else if (of_index_three_ && t + (1 + short_rest) * h_ > end)
+    else if (index_ > 1 && t + (1 + short_rest) * h_ > end)
       t1 = t + 0.5 * (end - t);
     if (t1 != t + h_) changed_ = true;
     if (t1 == end || t1 != t + h_) h_ = t1 - t;
@@ -194,26 +210,19 @@ class Radau5 {
       changed_ = false;
     }
     const WeightedNorm& norm = error_.norm(y0_.data(), h_);
-    guess(trial_, h_, 1);
+    guess(trial_, h_);
     const int most = options_.step > 0 ? patient_iterations : Prediction::most_iterations;
     const StepStart start{t_, y0_.data(), ydot0_.data()};
-    const bool only_whole = whole_steps_ >= needed_always;
-    Outcome outcome = only_whole ? Outcome::slow
-                                 : stages_->solve(*factors_, t, h_, y0_.data(), norm,
-                                                  error_.fraction(), most, trial_);
-    bool whole = false;
-    if (outcome == Outcome::slow || outcome == Outcome::diverged) {
-      if (!only_whole && error_.rounding_is_left(*stages_, start))
-        outcome = Outcome::converged;
-      else if (whole_is_due())
-        outcome = solve_whole(t, norm), whole = true;
-    }
+    const Outcome outcome =
+        whole_
+            ? whole_->solve(t, h_, gamma / h_, y0_.data(), norm, error_.fraction(), trial_)
+            : stages_->solve(*factors_, t, h_, y0_.data(), norm, error_.fraction(), most, trial_);
     switch (outcome) {
       case Outcome::converged:
         break;
       case Outcome::slow:
       case Outcome::diverged:
-        unsolved_ += derivatives_fresh_;
+        if (!whole_ && error_.rounding_is_left(*stages_, start)) break;
         return fail("Newton's method did not converge", 0.5);
       case Outcome::evaluation_failed:
         return fail(evaluation_cause(system_.failure()), 0.25);
@@ -224,25 +233,11 @@ class Radau5 {
         options_.step > 0 ? 0
                           : error_.of(*stages_, *factors_, start, h_, trial_, first_ || rejected_);
     if (!std::isfinite(error)) return fail("a value that is not a finite number came up", 0.25);
-    const double by_error = Prediction::divisor(error, whole ? 1 : stages_->count);
+    const double by_error = Prediction::divisor(error, whole_ ? 1 : stages_->count);
     if (error >= 1)
       return fail("the local error stayed above its tolerance", first_ ? 0.1 : 1 / by_error);
-    whole_steps_ = whole ? whole_steps_ + 1 : 0;
-    unsolved_ = 0;
     accept(t, t1, error, by_error);
-    if (whole) have_derivatives_ = false;
     return true;
-  }
-
-  /// Whether the simplified iteration has failed often enough for the whole one to be tried.
-  bool whole_is_due() const {
-    return whole_steps_ > 0 || unsolved_ >= shortenings ||
-           (options_.step > 0 && derivatives_fresh_);
-  }
-  Outcome solve_whole(double t, const WeightedNorm& norm) {
-    if (!whole_) whole_ = std::make_unique<WholeStages>(system_);
-    guess(trial_, h_, 1);
-    return whole_->solve(t, h_, gamma / h_, y0_.data(), norm, error_.fraction(), trial_);
   }
 
   bool fail(std::string cause, double factor) {
@@ -262,7 +257,7 @@ class Radau5 {
     for (std::size_t k = 0; k < n_; ++k) y_[k] = y0_[k] + z_[2][k];
     stages_->rate(2, h_, z_, ydot_.data());
     const double factor = control_.factor(h_, error, by_error, first_, rejected_);
-    have_derivatives_ = stages_->theta <= fast;
+    have_derivatives_ = !whole_ && stages_->theta <= fast;
     derivatives_fresh_ = false;
     if (options_.step > 0) {
       first_ = false;
@@ -275,31 +270,43 @@ class Radau5 {
     first_ = rejected_ = false;
   }
 
-  /// Starting values for stages of a step of length h from y0_: the last step's polynomial
-  /// prolonged past the last step's end (`past` 1) or inside it (0); before the first step a
-  /// straight line.
-  void guess(StageValues& z, double h, double past) const {
+  /// Starting values for stages of the next step, of length h: the last step's polynomial
+  /// prolonged; before the first step a straight line.
+  void guess(StageValues& z, double h) const {
     for (std::size_t k = 0; k < n_; ++k)
       for (std::size_t i = 0; i < 3; ++i)
-        z[i][k] = first_ ? c[i] * h * ydot0_[k]
-                         : polynomial(z_, k, past + c[i] * h / done_) - past * z_[2][k];
+        z[i][k] =
+            first_ ? c[i] * h * ydot0_[k] : polynomial(z_, k, 1 + c[i] * h / done_) - z_[2][k];
   }
 
-  /// The step from the last one's start to a time inside it; false when it does not converge.
+  /// A step to a time inside the last one, from its start or the one before; false where there is
+  /// none, or where it does not converge.
   bool step_to(double t, double* y, double* ydot) {
-    const double h = t - t0_;
-    if (h <= 4 * epsilon * std::max(std::abs(t0_), 1e-6 * span_)) {
-      std::copy(y0_.begin(), y0_.end(), y);
-      std::copy(ydot0_.begin(), ydot0_.end(), ydot);
+    const double before = t0_ - earlier_t_;
+    const bool early =
+        index_ > 1 && t - t0_ < short_sample * (before > 0 ? std::min(before, done_) : done_);
+    if (early && !(before > 0)) return false;
+    const double from = early ? earlier_t_ : t0_, h = t - from;
+    const std::vector<double>&start = early ? earlier_y_ : y0_,
+          &rate = early ? earlier_ydot_ : ydot0_;
+    if (h <= 4 * epsilon * std::max(std::abs(from), 1e-6 * span_)) {
+      std::copy(start.begin(), start.end(), y);
+      std::copy(rate.begin(), rate.end(), ydot);
       return true;
     }
-    if (!look_) look_ = std::make_unique<Look>(system_);
+    if (!look_) look_ = std::make_unique<Look>(system_, whole_ != nullptr);
     error_.forget();
-    const WeightedNorm& norm = error_.norm(y0_.data(), h);
+    const WeightedNorm& norm = error_.norm(start.data(), h);
     error_.forget();
-    guess(sample_, h, 0);
-    return (*look_)(t0_, h, gamma / done_, y0_.data(), ydot0_.data(), norm, error_.fraction(),
-                    whole_steps_ > 0, sample_, y, ydot);
+    // The cubic, and that of the step before, whose stages the trial of this step has left.
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double part = (early ? from - t0_ : 0) / done_ + c[i] * h / done_;
+      for (std::size_t k = 0; k < n_; ++k)
+        sample_[i][k] = part < 0 ? polynomial(trial_, k, c[i] * h / before)
+                                 : y0_[k] - start[k] + polynomial(z_, k, part);
+    }
+    return (*look_)(from, h, gamma / done_, start.data(), rate.data(), norm, error_.fraction(),
+                    sample_, y, ydot);
   }
 
   DaeSystem& system_;
@@ -310,21 +317,21 @@ class Radau5 {
   LocalError error_;
   Prediction control_;
   std::size_t n_;
+  int index_;
+  const StructuredSystem* structure_;  ///< null: not known
   std::unique_ptr<Stages> stages_;
   std::unique_ptr<Factors> factors_;
-  std::unique_ptr<Look> look_;                 ///< null until asked for
-  std::unique_ptr<WholeStages> whole_;         ///< the same
-  std::vector<double> y_, ydot_, y0_, ydot0_;  ///< at the step's end and start
+  std::unique_ptr<Look> look_;                    ///< null until asked for
+  std::unique_ptr<WholeStages> whole_;            ///< null: simplified iterations
+  std::vector<double> y_, ydot_, y0_, ydot0_;     ///< at the step's end and start
+  std::vector<double> earlier_y_, earlier_ydot_;  ///< at the start of the step before
   StageValues z_, trial_, sample_;
-  std::vector<int> power_;  ///< by variable
-  bool of_index_three_ = false;
   double start_ = 0;                   ///< of the run [s]
   double t_ = 0;                       ///< where the step under way begins [s]
   double t0_ = 0, t1_ = 0, done_ = 0;  ///< the last step [s]
+  double earlier_t_ = 0;               ///< start of the step before; t0_: there is none
   double h_ = 0;                       ///< tried next [s]
   bool first_ = true, rejected_ = false;
-  int unsolved_ = 0;     ///< trials of this step that Newton's method left, derivatives fresh
-  int whole_steps_ = 0;  ///< in a row, with derivatives of all stages
   bool changed_ = true;  ///< h_ is not that of the factors
   bool have_derivatives_ = false, derivatives_fresh_ = false, have_factors_ = false;
   std::string failure_;

@@ -4,9 +4,10 @@
 //
 //   δ_ij ∂F/∂y|_i + (A⁻¹)_ij / h ∂F/∂y'|_i,
 //
-// for equations on which the simplified iteration does not converge however short the step. Of
-// index 2 with time in ∂F/∂y' what the step's start misses of the stages is multiplied by c/h: with
-// a + η t b = f, a' + η t b' + (1 + η) b = g the iteration contracts by 2η/(1 + η), whatever h is.
+// for equations whose structure is not regular (structured_system.h): the simplified iteration need
+// not converge on them, however short the step. What it misses of ∂F/∂y' at the stages, of order h,
+// comes c times with c/h: with a + η t b = f, a' + η t b' + (1 + η) b = g it contracts by
+// 2η/(1 + η), whatever h is.
 
 #include <momenta/dae/solver/radau5_stages.h>
 

@@ -70,8 +70,8 @@ class CpuLimit {
   long calls_ = 0, between_ = 1;  ///< since then; until the next look
 };
 
-/// A run against the limit of its steps: as soon as thirty thousand of them were so short that
-/// the limit would be reached before the end, it need not go on to find out.
+/// A run without a limit of time against that of its steps: as soon as thirty thousand were so
+/// short that the limit would be reached before the end, it need not go on to find out.
 class Pace {
  public:
   /// `count`: of the steps before t0.

@@ -321,7 +321,20 @@ TEST(EquationStarts, AskForARateThatTheGuessLeavesOpen) {
   EXPECT_EQ(given.point.why, "");
   EXPECT_NEAR(given.point.y[0], 1, 1e-12);
   EXPECT_NEAR(given.point.ydot[0], -1, 1e-12);
+  const EquationStart corner =
+      equation_start(file_of({"x"}, {"abs(der(x)) = x"}, "values = { x = 1 }\n"));
+  EXPECT_NE(corner.point.why.find("leave the rate of x undetermined"), std::string::npos)
+      << corner.point.why;
+  // Without a start at the guess: x' = y' = ±1.
+  const EquationStart product = equation_start(
+      file_of({"x", "y"}, {"der(x)*der(y) = 1", "x - y = t^2"}, "values = { x = 1 }\n"));
+  EXPECT_NE(product.point.why.find("leave the rate of x undetermined"), std::string::npos)
+      << product.point.why;
   // One rate alone: it is found.
+  const EquationStart turning =
+      equation_start(file_of({"x"}, {"der(x) + 0.5*abs(der(x)) = 1 - x"}, ""));
+  EXPECT_EQ(turning.point.why, "");
+  EXPECT_NEAR(turning.point.ydot[0], 2.0 / 3, 1e-12);
   const EquationStart one =
       equation_start(file_of({"y"}, {"der(y)^3 = y"}, "values = { y = 8 }\n"));
   EXPECT_EQ(one.point.why, "");
@@ -431,13 +444,31 @@ TEST(EquationRuns, OfIndexTwoFilterTheirErrors) {
   }
 }
 
+// The same right behind the ends of steps of one length.
+TEST(EquationRuns, SampleVariablesOfIndexTwoRightBehindAStep) {
+  const EquationFile file = file_of(
+      {"x", "z"}, {"der(x) = z*exp(0.3*x) - x", "x + 0.2*x^3 = sin(t)"}, "[run]\nend = 4\n");
+  const auto error = [](const EquationRun& r) {
+    double largest = 0;
+    for (std::size_t k = 1; k < r.t.size(); ++k) {
+      const double x = r.y[k][0], rate = std::cos(r.t[k]) / (1 + 0.6 * x * x);
+      largest = std::max(largest, std::abs(r.y[k][1] - (rate + x) * std::exp(-0.3 * x)));
+    }
+    return largest;
+  };
+  const EquationRun ends = run(file, "radau5", 1e-9, 0.04, 100),
+                    behind = run(file, "radau5", 1e-9, 0.04 / (1 + 1e-5), 100);
+  EXPECT_LT(error(behind), 3 * error(ends));
+}
+
 // All variables are of index 2: a − b = 2 sin t.
 TEST(EquationRuns, TestVariablesOfIndexTwoWhereThereAreNoOthers) {
   const EquationFile file = file_of(
       {"a", "b", "c"}, {"der(a) + der(b) + a - b = sin(t)", "a + b = cos(t)", "der(c) = -c"},
       "values = { c = 1 }\n[run]\nend = 10\n");
-  for (const double tolerance : {1e-4, 1e-6}) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-10}) {
     const EquationRun r = run(file, "ida", tolerance);
+    EXPECT_LT(r.counters.steps, 1000);
     EXPECT_NEAR(r.last[0], 0.5 * std::cos(10) + std::sin(10), 100 * tolerance);
     EXPECT_NEAR(r.last[2], std::exp(-10), 100 * tolerance);
   }
@@ -445,7 +476,7 @@ TEST(EquationRuns, TestVariablesOfIndexTwoWhereThereAreNoOthers) {
 
 // b = e⁻ᵗ, a = (1 − ηt) b. The simplified iteration contracts by 2η/(1 + η) whatever the step is.
 TEST(EquationRuns, ConvergeWhereDerivativesOfTheStartDoNot) {
-  for (const double eta : {0.5, 3.0}) {
+  for (const double eta : {0.5, 3.0, 10.0}) {
     const std::string text = std::to_string(eta);
     const EquationFile file = file_of({"a", "b"},
                                       {"a + " + text + "*t*b = exp(-t)",
@@ -461,8 +492,10 @@ TEST(EquationRuns, ConvergeWhereDerivativesOfTheStartDoNot) {
 }
 
 TEST(EquationRuns, SayWhatLeavesEveryBound) {
-  const auto reason = [](const std::string& equation, const std::string& integrator) {
-    const EquationFile file = file_of({"x"}, {equation}, "values = { x = 1 }\n[run]\nend = 2\n");
+  const auto reason = [](const std::vector<std::string>& equations, const std::string& integrator) {
+    std::vector<std::string> variables{"x", "z"};
+    variables.resize(equations.size());
+    const EquationFile file = file_of(variables, equations, "values = { x = 1 }\n[run]\nend = 2\n");
     EquationRunRequest request;
     request.integrator = integrator;
     request.end = 2;
@@ -471,11 +504,13 @@ TEST(EquationRuns, SayWhatLeavesEveryBound) {
     return r.reason;
   };
   for (const std::string integrator : {"ida", "radau5"}) {
-    const std::string pole = reason("der(x) = x^2", integrator),
-                      root = reason("2*x*der(x) = -1", integrator);
+    const std::string pole = reason({"der(x) = x^2"}, integrator),
+                      root = reason({"2*x*der(x) = -1"}, integrator),
+                      of_none = reason({"der(x) = -1", "x*z = 1"}, integrator);
     EXPECT_NE(pole.find("; x leaves every bound near t = 1"), std::string::npos) << pole;
     EXPECT_NE(root.find("; the rate of x leaves every bound near t = 1"), std::string::npos)
         << root;
+    EXPECT_NE(of_none.find("; z leaves every bound near t = 1"), std::string::npos) << of_none;
   }
 }
 
@@ -513,6 +548,18 @@ TEST(EquationRuns, BeginAnewAtJumps) {
                   "values = { x = 1 }\n[run]\nend = 0.6283185307179586\n"),
               0.96, 1e-6);
   EXPECT_NEAR(end({"x"}, {"der(x) = min(abs(t - 1), 0.25)"}, "[run]\nend = 2\n"), 0.4375, 1e-7);
+  EXPECT_NEAR(end({"x"}, {"der(x) = if(abs(t - 1) < 1e-4, 1e4, 0)"}, "[run]\nend = 2\n"), 2, 1e-7);
+}
+
+// u(1) = −1/4: time passes by 2(1 − ln 2) down to u = 0, and by 2 ln 2 − 1 from there. Formulas
+// have no values, or no slopes, behind where they turn.
+TEST(EquationRuns, PassSwitchesThatFormulasEndAt) {
+  for (const std::string law : {"-sign(u)*sqrt(abs(u))", "if(u > 0, -sqrt(u), sqrt(-u))",
+                                "sqrt(max(-u, 0)) - sqrt(max(u, 0))"}) {
+    const EquationFile file =
+        file_of({"u"}, {"der(u) = " + law + " - 1"}, "values = { u = 1 }\n[run]\nend = 1\n");
+    EXPECT_NEAR(run(file, "ida", 1e-8).last[0], -0.25, 1e-6) << law;
+  }
 }
 
 TEST(EquationRuns, NameWhatMakesValuesJump) {

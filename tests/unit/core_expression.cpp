@@ -3,12 +3,14 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/expression.h>
 #include <momenta/core/expression/switches.h>
 
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 
 namespace momenta::core_expression {
 namespace {
@@ -293,16 +295,38 @@ TEST(Expression, BoundsHowDeepAndHowLongItIs) {
   EXPECT_NEAR(value(sum), 2001 * a, 1e-9);
 }
 
+// What is not chosen need have no slope.
+TEST(Expression, DifferentiatesWhatIsChosenAlone) {
+  const std::vector<std::string> x{"x"};
+  const auto slope = [&](const char* text, double at) {
+    const int by = 0;
+    const Expression both = Expression(text, x).with_derivatives(std::span(&by, 1));
+    std::vector<double> line(both.tape().size()), values(2);
+    evaluate(both, &at, line.data(), values.data());
+    return values[1];
+  };
+  EXPECT_EQ(slope("if(x < 0, (-x)^1.5, 0)", 1), 0);
+  EXPECT_NEAR(slope("if(x < 0, (-x)^1.5, 0)", -4), -3, 1e-15);
+  EXPECT_NEAR(slope("if(x > 0, log(x), if(x < -1, sqrt(-x - 1), sin(x)))", -0.5), std::cos(0.5),
+              1e-15);
+  EXPECT_EQ(slope("2*max(0, x)^0.5", -1), 0);
+  EXPECT_NEAR(slope("3*if(x > 0, 1/sqrt(x), 0)", 4), -3.0 / 16, 1e-15);
+}
+
 // With its switches held where they are a formula is what it was; each turns where its mode ends.
 TEST(Expression, HoldsItsSwitches) {
   const std::vector<std::string> xy{"x", "y"};
   for (const char* text :
        {"if(x < y and not y <= 0.5, x^2, 3*y)", "abs(x - y) + sign(x)*y", "floor(3*x) + floor(y)",
-        "min(x, y)*max(x, 2*y)", "if(abs(x) > max(y, 0.2), sign(y), floor(x/y))"}) {
+        "min(x, y)*sign(max(x, 2*y))", "if(abs(x) > max(y, 0.2), sign(y), floor(x/y))"}) {
     const Expression formula(text, xy);
     Switches switches(2);
     const Expression held = switches.held(formula);
-    EXPECT_EQ(held.corner() == "" || held.corner() == "if", true) << text;
+    for (const formula::Instruction& in : held.tape()) {
+      EXPECT_NE(in.operation, formula::Operation::less) << text;
+      EXPECT_NE(in.operation, formula::Operation::sign) << text;
+      EXPECT_NE(in.operation, formula::Operation::floor) << text;
+    }
     for (const double x : {-0.9, 0.3, 1.7})
       for (const double y : {-1.2, 0.4, 0.8}) {
         std::vector<double> all{x, y};
