@@ -3,6 +3,7 @@
 // index 2 in a gauge that is changed at random.
 
 #include "equations/ensemble.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -65,7 +66,7 @@ class Halving {
         if (exact.t != t) continue;
         const auto largest = [&](int from, int to, const double* known, double& error) {
           for (int i = from; i < to; ++i)
-            error = equations::larger(error, std::abs(y[i] - *known++));
+            error = larger(error, std::abs(y[i] - *known++));
         };
         largest(0, nq, exact.y.data(), errors.q);
         largest(nq, n, exact.y.data() + nq, errors.x);

@@ -68,7 +68,7 @@ void compare(const Scene& scene, RandomTree& random, const MechanismOptions& opt
                b = solved(*assembled, twin, s, p, centre);
   const double growth = std::sqrt(c.of_mass) * c.of_loops * c.of_loops;
   const auto note = [&](double& to, const VectorXd& x, const VectorXd& y) {
-    to = equations::larger(to, over_growth(relative_error(x, y), growth, 1e6));
+    to = larger(to, over_growth(relative_error(x, y), growth, 1e6));
   };
   note(worst.u, a.u, b.u);
   note(worst.sigma, a.sigma, b.sigma);

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <vector>
 
-#include "equations/tolerance.h"
 
 namespace momenta::dae_solver_tableaux {
 namespace {
@@ -72,7 +71,7 @@ class OrderConditions {
       long double left = 0;
       for (std::size_t i = 0; i < stages; ++i) left += w[i] * t.weight[i];
       const long double right = target * std::pow(theta, nodes) / t.density;
-      largest = equations::larger(largest, std::abs(left - right));
+      largest = std::max(largest, std::abs(left - right));
     }
     return static_cast<double>(largest);
   }
