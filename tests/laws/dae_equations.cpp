@@ -456,9 +456,11 @@ TEST(EquationRuns, SampleVariablesOfIndexTwoRightBehindAStep) {
     }
     return largest;
   };
-  const EquationRun ends = run(file, "radau5", 1e-9, 0.04, 100),
-                    behind = run(file, "radau5", 1e-9, 0.04 / (1 + 1e-5), 100);
-  EXPECT_LT(error(behind), 3 * error(ends));
+  for (const double tolerance : {1e-5, 1e-7}) {
+    const EquationRun ends = run(file, "radau5", tolerance, 0.04, 100),
+                      behind = run(file, "radau5", tolerance, 0.04 / (1 + 1e-5), 100);
+    EXPECT_LT(error(behind), 3 * error(ends));
+  }
 }
 
 // All variables are of index 2: a − b = 2 sin t.
@@ -472,6 +474,9 @@ TEST(EquationRuns, TestVariablesOfIndexTwoWhereThereAreNoOthers) {
     EXPECT_NEAR(r.last[0], 0.5 * std::cos(10) + std::sin(10), 100 * tolerance);
     EXPECT_NEAR(r.last[2], std::exp(-10), 100 * tolerance);
   }
+  const EquationFile alone =
+      file_of({"a", "b"}, {"der(a) + der(b) + a - b = sin(t)", "a + b = cos(t)"}, "");
+  EXPECT_LT(run(alone, "ida", 1e-8).counters.steps, 200);
 }
 
 // b = e⁻ᵗ, a = (1 − ηt) b. The simplified iteration contracts by 2η/(1 + η) whatever the step is.
