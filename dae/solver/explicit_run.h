@@ -88,13 +88,14 @@ class ExplicitRun {
   }
 
   bool steps() {
+    const bool adaptive = !trials_.fixed() && !(cpu_.seconds() > 0);  // what is asked for goes on
     Pace pace(result_.counters.steps + result_.counters.rejected, t_, end_, options_.max_steps);
     while (true) {
       if (carry_ && system_.can_be_put_down()) observer_.before_step(t_, carry_);
       const long attempts = result_.counters.steps + result_.counters.rejected;
       if (attempts >= options_.max_steps)
         return stop("the limit of " + std::to_string(options_.max_steps) + " steps is reached");
-      if (!(cpu_.seconds() > 0) && pace.is_hopeless(attempts, t_)) return stop(pace.in_words());
+      if (adaptive && pace.is_hopeless(attempts, t_)) return stop(pace.in_words());
       if (cpu_.exceeded()) {
         result_.reason = time_limit_sentence(Tableau::name, cpu_.seconds(), t_);
         return false;
