@@ -82,24 +82,19 @@ class SampleErrors {
     if (own.size() == 0) return;
     own_row_ = row.numbers();
     double& difference = series_.multiplier_difference.back();
+    const auto& rows = mechanism_.rows();
+    std::size_t place = row.first_force();
     for (Eigen::Index i = 0; i < own.size(); ++i) {
-      own_row_[place_of_lambda(row, i)] = own[i];
+      own_row_[place] = own[i];
+      // Among the columns of forces, `undetermined` stands behind the rows of each loop.
+      const auto next = static_cast<std::size_t>(i) + 1;
+      place += next < rows.size() && rows[next - 1].loop != rows[next].loop ? 2 : 1;
       const double solved = row.forces()->lambda()[i],
                    apart = std::abs(own[i] - solved) / (1 + std::abs(solved));
       if (row.forces()->unique()[static_cast<std::size_t>(i)] && !(apart <= difference))
         difference = apart;
     }
     own_row_.resize(measured_.size(), not_measured);
-  }
-  /// Among the columns of forces, `undetermined` stands behind the rows of each loop.
-  std::size_t place_of_lambda(const TrajectoryRow& row, Eigen::Index i) const {
-    std::size_t place = row.first_force();
-    for (Eigen::Index k = 0; k < i; ++k) {
-      const auto& rows = mechanism_.rows();
-      const auto at = static_cast<std::size_t>(k);
-      place += rows[at].loop != rows[at + 1].loop ? 2 : 1;
-    }
-    return place;
   }
 
   void compare(double t, const Snapshot& state, const TrajectoryRow& row, double work) {
