@@ -13,10 +13,16 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 #include <thread>
+#include <vector>
 
 namespace momenta {
+namespace {
+
+// Fowler, Noll and Vo, 64 bits.
+constexpr std::uint64_t fnv_start = 14695981039346656037ull, fnv_prime = 1099511628211ull;
+
+}  // namespace
 
 const char* version() {
   return MOMENTA_VERSION;
@@ -62,9 +68,17 @@ std::string build_digest() {
   const Environment e = environment();
   std::string all = e.cpu + std::to_string(e.level) + e.compiler + e.flags + e.build_type;
   for (const auto& [name, version] : e.versions) all += name + version;
+  // Word by word: tens of megabytes byte by byte take a fifth of a second.
   std::ifstream program("/proc/self/exe", std::ios::binary);
-  all.append(std::istreambuf_iterator<char>(program), {});
-  return digest(all);
+  std::vector<std::uint64_t> words(1 << 13);
+  std::uint64_t h = fnv_start;
+  while (program) {
+    std::fill(words.begin(), words.end(), 0);
+    program.read(reinterpret_cast<char*>(words.data()),
+                 static_cast<std::streamsize>(words.size() * sizeof words[0]));
+    for (const std::uint64_t word : words) h = (h ^ word) * fnv_prime;
+  }
+  return digest(all + std::to_string(h));
 }
 
 int threads_of(int asked) {
@@ -72,11 +86,8 @@ int threads_of(int asked) {
 }
 
 std::string digest(std::string_view text) {
-  std::uint64_t h = 14695981039346656037ull;
-  for (const char c : text) {
-    h ^= static_cast<unsigned char>(c);
-    h *= 1099511628211ull;
-  }
+  std::uint64_t h = fnv_start;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * fnv_prime;
   char hex[17];
   std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h));
   return hex;
