@@ -76,6 +76,9 @@ class OdeSystem {
   /// last rhs().
   virtual LocalJacobian* local() { return nullptr; }
 
+  /// The time in which an unknown of its typical size typically changes by it [s].
+  virtual double time_scale() const { return 1.0; }
+
   /// One sentence on the last call that returned false.
   const std::string& failure() const { return failure_; }
 
