@@ -301,5 +301,32 @@ TEST(LoopRank, OfWhatIsNotFiniteNothingIsKnown) {
   }
 }
 
+/// Blocks of rank one and two beside each other, some of them zero: Eigen's divide and conquer errs
+/// on one in 150 of these.
+TEST(LoopRank, WhatIsIdleIsReachedByNoColumn) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto below = [&](unsigned n) { return static_cast<Eigen::Index>(random() % n); };
+  const auto filled = [&](Eigen::Index rows, Eigen::Index columns) {
+    Eigen::MatrixXd m(rows, columns);
+    for (double& x : m.reshaped()) x = number(random);
+    return m;
+  };
+  for (int k = 0; k < 600; ++k) {
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(17 + below(8), 17 + below(8));
+    for (Eigen::Index row = 0, column = 0; row < a.rows() && column < a.cols();) {
+      const Eigen::Index h = std::min(1 + below(6), a.rows() - row),
+                         w = std::min(1 + below(3), a.cols() - column), rank = 1 + below(2);
+      if (below(3) > 0) a.block(row, column, h, w) = filled(h, rank) * filled(rank, w);
+      row += h;
+      column += w;
+    }
+    const RankAndIdle found = rank_and_idle(a);
+    ASSERT_EQ(found.left.cols() + found.rank, a.rows());
+    ASSERT_LE((found.left.transpose() * a).norm(), 1e-10 * a.norm()) << k;
+    ASSERT_TRUE((found.left.transpose() * found.left).isIdentity(1e-10)) << k;
+  }
+}
+
 }  // namespace
 }  // namespace momenta::dae_loop_rank
