@@ -16,6 +16,15 @@ namespace {
 
 constexpr double near_pivot = 1e-2;  // of the best: near a singular pose
 
+/// Why there is no u of M u + prescribed part = p at (t, q); empty: there is one.
+std::string without_rates(const std::string& form, const Mechanism& mechanism,
+                          Evaluation<double>& e, double t, const double* q) {
+  const std::string singular = mass_without_inverse(mechanism, e, t, q);
+  if (singular.empty()) return "";
+  return "'" + form + "' takes rates from M u = p, and " + singular +
+         "; expected a form whose rates obey the " + loop_word(mechanism) + "s, as momentum-index2";
+}
+
 }  // namespace
 
 DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
@@ -106,17 +115,6 @@ std::vector<double> DaeForm::initial(const Start& start) {
   plain_.e->momenta(momentum_like() ? multipliers : nullptr, y.data() + layout_.x());
   return y;
 }
-
-namespace {
-/// Why there is no u of M u + prescribed part = p at (t, q); empty: there is one.
-std::string without_rates(const std::string& form, const Mechanism& mechanism,
-                          Evaluation<double>& e, double t, const double* q) {
-  const std::string singular = mass_without_inverse(mechanism, e, t, q);
-  if (singular.empty()) return "";
-  return "'" + form + "' takes rates from M u = p, and " + singular +
-         "; expected a form whose rates obey the " + loop_word(mechanism) + "s, as momentum-index2";
-}
-}  // namespace
 
 bool DaeForm::start(double t, double* y, double* ydot) {
   if (unknowns_ == Unknowns::momenta && layout_.m > 0)
