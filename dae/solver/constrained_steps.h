@@ -229,7 +229,7 @@ IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<doub
         singular.empty() ? "the start has no rates"
                          : "the method takes rates from M u = p, and " + singular +
                                "; expected a method that solves for them with the multipliers, "
-                               "as gauss");
+                               "as gauss4");
     return result;
   }
   MultistepRun<Steps<Step>>(method, system.size(), t0, output_times, options, observer).run(result);
