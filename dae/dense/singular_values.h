@@ -1,8 +1,29 @@
 #pragma once
-// Singular values of dense matrices: Eigen's divide and conquer, and the rotations it ends with,
-// which take half a minute to compile, compiled once.
+// Singular values of dense matrices: Eigen's divide and conquer, which (3.4) errs on some with many
+// singular values that are zero, up to NaN; so its product is compared with the matrix, and where
+// it is another, the rotations of Jacobi take its place. Half a minute of compilation, once.
 
 #include <Eigen/SVD>
 
-extern template class Eigen::BDCSVD<Eigen::MatrixXd>;
+namespace momenta {
+
+/// A = U S Vᵀ, m × n.
+struct SingularValues {
+  SingularValues() = default;
+  /// `options` of Eigen say which columns of U and V there are: all, or as many as values. Where A
+  /// is not finite, nothing is. O((m + n)³)
+  explicit SingularValues(const Eigen::MatrixXd& a,
+                          unsigned options = Eigen::ComputeFullU | Eigen::ComputeFullV);
+
+  /// How many values are above this part of the largest.
+  Eigen::Index rank(double part) const;
+  /// The least x (n) with the least |A x − b|, by so many values. O(rank (m + n))
+  Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const;
+
+  Eigen::VectorXd values;  ///< descending
+  Eigen::MatrixXd u, v;    ///< orthonormal columns
+};
+
+}  // namespace momenta
+
 extern template class Eigen::JacobiSVD<Eigen::MatrixXd>;

@@ -61,13 +61,15 @@ SystemJacobian system_jacobian(const EquationFile& file, const structure::Offset
   found.determinant = j.determinant();
   Eigen::VectorXd rows = Eigen::VectorXd::Ones(n);
   equilibrate(j, rows);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  found.rank = rank_by_gap(svd.singularValues(), svd.singularValues()[0]);
+  const SingularValues svd(j);
+  found.rank = rank_by_gap(svd.values, svd.values[0]);
   for (int k = found.rank.rank; k < n; ++k) {
-    Eigen::VectorXd combination = svd.matrixU().col(k).cwiseProduct(rows);
-    Eigen::Index largest = 0;
-    combination.cwiseAbs().maxCoeff(&largest);
-    combination /= combination[largest];
+    Eigen::VectorXd combination = svd.u.col(k).cwiseProduct(rows);
+    // The first of those that are the largest but for rounding is 1.
+    const double most = (1 - 1e-9) * combination.cwiseAbs().maxCoeff();
+    Eigen::Index first = 0;
+    while (std::abs(combination[first]) < most) ++first;
+    combination /= combination[first];
     found.cancelling.push_back(std::move(combination));
   }
   return found;

@@ -135,11 +135,11 @@ class Search {
     if (j.cols() == 0) return;
     MatrixXd null = MatrixXd::Identity(j.cols(), j.cols());
     if (j.rows() > 0) {
-      const Eigen::BDCSVD<MatrixXd> svd(j, Eigen::ComputeFullV);
-      const VectorXd& values = svd.singularValues();
+      const SingularValues svd(j);
+      const VectorXd& values = svd.values;
       Eigen::Index rank = 0;
       while (rank < values.size() && values[rank] > free_value * values[0]) ++rank;
-      null = svd.matrixV().rightCols(j.cols() - rank);
+      null = svd.v.rightCols(j.cols() - rank);
     }
     if (null.cols() <= spins_) return;
     // Rates that span the freedoms: the pivots of what is left free.

@@ -28,11 +28,11 @@ bool lose_ranks(PoseCurve& curve, Eigen::Index k, CurvePoint& at) {
   double before = near_by;
   for (int pass = 0; pass < most_steps; ++pass) {
     curve.linearise(at, residual, J);
-    const Eigen::BDCSVD<MatrixXd> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const VectorXd& values = svd.singularValues();
+    const SingularValues svd(J);
+    const VectorXd& values = svd.values;
     const Eigen::Index n = values.size(), kept = n - k;
     if (kept > 0 && !(values[kept - 1] > rank_is_kept * values[0])) return false;
-    const MatrixXd psi = svd.matrixU().rightCols(k), ways = svd.matrixV().rightCols(k + 1);
+    const MatrixXd psi = svd.u.rightCols(k), ways = svd.v.rightCols(k + 1);
     const auto turned = [&](const VectorXd& way) -> MatrixXd {  // ψᵀ ∂J/∂x(way) T
       VectorXd unused;
       curve.linearise(curve.moved(at, difference * way), unused, ahead);
@@ -42,8 +42,8 @@ bool lose_ranks(PoseCurve& curve, Eigen::Index k, CurvePoint& at) {
     VectorXd step = VectorXd::Zero(n + 1);
     MatrixXd slope = psi.transpose() * J * ways;
     if (kept > 0) {
-      step = -svd.matrixV().leftCols(kept) *
-             (svd.matrixU().leftCols(kept).transpose() * residual).cwiseQuotient(values.head(kept));
+      step = -svd.v.leftCols(kept) *
+             (svd.u.leftCols(kept).transpose() * residual).cwiseQuotient(values.head(kept));
       if (step.norm() > 0) slope += turned(step);
     }
     MatrixXd bends(k * (k + 1), k + 1);
@@ -66,7 +66,7 @@ bool change_point_near(PoseCurve& curve, const CurvePoint& near, CurvePoint& at)
   VectorXd residual;
   MatrixXd J;
   curve.linearise(near, residual, J);
-  const VectorXd values = Eigen::BDCSVD<MatrixXd>(J).singularValues();
+  const VectorXd values = SingularValues(J).values;
   for (Eigen::Index k = 1; k <= values.size() && values[values.size() - k] < seems_lost * values[0];
        ++k) {
     at = near;

@@ -34,21 +34,20 @@ std::vector<Ball> idle_balls(ScaledLoops& loops, double t, const VectorXd& q) {
   for (std::size_t k = 0; k < entries.size(); ++k)
     if (const int at = column[static_cast<std::size_t>(loops.pattern()[k].column)]; at >= 0)
       J(loops.pattern()[k].row, at) = entries[k];
-  const Eigen::BDCSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
-  const VectorXd& values = svd.singularValues();
+  const SingularValues svd(J);
+  const VectorXd& values = svd.values;
   const auto rank = (values.array() > null * values.maxCoeff()).count();
-  const MatrixXd ways = svd.matrixV().rightCols(columns - rank);
+  const MatrixXd ways = svd.v.rightCols(columns - rank);
   if (ways.cols() == 0) return {};
   std::vector<Ball> idle;
   VectorXd step = VectorXd::Zero(mechanism.nv());
   for (std::size_t k = 0; k < balls.size(); ++k) {
-    const Eigen::BDCSVD<MatrixXd> turns(MatrixXd(ways.middleRows(3 * static_cast<long>(k), 3)),
-                                        Eigen::ComputeFullU);
-    const VectorXd& sizes = turns.singularValues();
+    const SingularValues turns(ways.middleRows(3 * static_cast<long>(k), 3));
+    const VectorXd& sizes = turns.values;
     const auto freedoms = (sizes.array() > 1e-6).count();
     if (freedoms > 1) return {};
     if (freedoms == 0) continue;
-    balls[k].axis = turns.matrixU().col(0);
+    balls[k].axis = turns.u.col(0);
     idle.push_back(balls[k]);
   }
   // A finite turn, in all ways at once.

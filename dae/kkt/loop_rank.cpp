@@ -37,8 +37,6 @@ ScaledJacobian scaled_jacobian(const Mechanism& mechanism, Evaluation<double>& e
   return scaled;
 }
 
-/// Eigen's divide and conquer (3.4) errs on some matrices with many singular values that are zero,
-/// up to NaN; its rotations do not.
 RankAndIdle rank_and_idle(const MatrixXd& a, double largest, int rank) {
   RankAndIdle d;
   if (a.rows() == 0) return d;
@@ -46,23 +44,15 @@ RankAndIdle rank_and_idle(const MatrixXd& a, double largest, int rank) {
     d.left = MatrixXd::Identity(a.rows(), a.rows());
     return d;
   }
-  const auto take = [&](const auto& svd) {
-    d.singular_values = svd.singularValues();
-    const VectorXd& s = d.singular_values;
-    const double most = largest == 0 ? s[0] : largest;
-    for (d.rank = 0; d.rank < s.size() && s[d.rank] > rank_tolerance * most;) ++d.rank;
-    if (rank >= 0) d.rank = rank;
-    d.kept = d.rank > 0 ? s[d.rank - 1] : 0;
-    d.dropped = d.rank < s.size() ? s[d.rank] : 0;
-    d.left = svd.matrixU().rightCols(a.rows() - d.rank);
-    constexpr double rounding = 1e-12;
-    return d.left.cols() == 0 ||
-           ((d.left.transpose() * d.left).isIdentity(1e-10) &&
-            (d.left.transpose() * a).cwiseAbs().sum() <=
-                rounding * s[0] + d.dropped * static_cast<double>(d.left.cols() * a.cols()));
-  };
-  if (!take(Eigen::BDCSVD<MatrixXd>(a, Eigen::ComputeFullU)))
-    take(Eigen::JacobiSVD<MatrixXd>(a, Eigen::ComputeFullU));
+  const SingularValues svd(a, Eigen::ComputeFullU | Eigen::ComputeThinV);
+  d.singular_values = svd.values;
+  const VectorXd& s = d.singular_values;
+  if (largest == 0) largest = s[0];
+  while (d.rank < s.size() && s[d.rank] > rank_tolerance * largest) ++d.rank;
+  if (rank >= 0) d.rank = rank;
+  if (d.rank > 0) d.kept = s[d.rank - 1];
+  if (d.rank < s.size()) d.dropped = s[d.rank];
+  d.left = svd.u.rightCols(a.rows() - d.rank);
   return d;
 }
 

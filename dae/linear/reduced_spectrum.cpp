@@ -89,12 +89,12 @@ void self_adjoint(const OnBasis& r, const Mechanism& mechanism, const Equilibriu
 void first_order(const OnBasis& r, const Mechanism& mechanism, const Equilibrium& at,
                  std::vector<Mode>& modes) {
   const Eigen::Index d = r.K.rows();
-  const Eigen::BDCSVD<MatrixXd> svd(r.K, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const VectorXd& sizes = svd.singularValues();
+  const SingularValues svd(r.K);
+  const VectorXd& sizes = svd.values;
   const Rounding rounding(mechanism, at, r.N, r.K, sizes[0]);
   Eigen::Index held = d;
-  while (held > 0 && sizes[held - 1] <= rounding.along(svd.matrixV().col(held - 1))) --held;
-  const MatrixXd R = svd.matrixV().leftCols(held), Z = svd.matrixV().rightCols(d - held);
+  while (held > 0 && sizes[held - 1] <= rounding.along(svd.v.col(held - 1))) --held;
+  const MatrixXd R = svd.v.leftCols(held), Z = svd.v.rightCols(d - held);
   const double omega = std::max({std::sqrt(sizes[0]), r.C.norm(), 1e-300});
   MatrixXd A = MatrixXd::Zero(held + d, held + d);
   A.topRightCorner(held, d) = omega * R.transpose();
@@ -103,11 +103,9 @@ void first_order(const OnBasis& r, const Mechanism& mechanism, const Equilibrium
 
   MatrixXd coupled(d, d);
   coupled << r.K * R / omega, r.C * Z;
-  const Eigen::BDCSVD<MatrixXd> ranks(coupled);
+  const VectorXd ranks = SingularValues(coupled).values;
   Eigen::Index free = 0;
-  while (free < d - held &&
-         ranks.singularValues()[d - 1 - free] <= 1e-11 * std::max(omega, ranks.singularValues()[0]))
-    ++free;
+  while (free < d - held && ranks[d - 1 - free] <= 1e-11 * std::max(omega, ranks[0])) ++free;
 
   const Eigen::EigenSolver<MatrixXd> solver(A);
   std::vector<Eigen::Index> order(static_cast<std::size_t>(A.rows()));

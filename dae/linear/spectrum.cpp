@@ -42,8 +42,8 @@ ScaledLoops scaled_loops(const Mechanism& mechanism, const Equilibrium& at) {
   e->constraint_entries(s.values.data());
   const std::vector<double> rows = row_scales(mechanism, *e);
   for (std::size_t i = 0; i < s.values.size(); ++i) {
-    s.values[i] *= s.column[pattern[i].column] /
-                   std::sqrt(rows[static_cast<std::size_t>(pattern[i].row)]);
+    s.values[i] *=
+        s.column[pattern[i].column] / std::sqrt(rows[static_cast<std::size_t>(pattern[i].row)]);
   }
   return s;
 }
@@ -57,8 +57,7 @@ MatrixXd motions_dense(const Mechanism& mechanism, const ScaledLoops& s, int ran
   const auto& pattern = mechanism.constraint_pattern();
   for (std::size_t i = 0; i < pattern.size(); ++i)
     a(pattern[i].row, pattern[i].column) = s.values[i];
-  const Eigen::BDCSVD<MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return s.column.asDiagonal() * svd.matrixV().rightCols(nv - rank);
+  return s.column.asDiagonal() * SingularValues(a).v.rightCols(nv - rank);
 }
 
 /// The same by projecting random vectors onto them, as many as there are.

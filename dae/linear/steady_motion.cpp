@@ -31,14 +31,14 @@ struct Decomposed {
     VectorXd row = scaled.rowwise().norm();
     for (double& x : row) x = x > 0 ? 1 / x : 0;
     scaled = row.asDiagonal() * scaled;
-    const Eigen::BDCSVD<MatrixXd> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const VectorXd& sizes = svd.singularValues();
+    const SingularValues svd(scaled);
+    const VectorXd& sizes = svd.values;
     Eigen::Index rank = 0;
     while (rank < sizes.size() && sizes[rank] > rank_tolerance * sizes[0]) ++rank;
-    free = column.asDiagonal() * svd.matrixV().rightCols(n - rank);
-    inverse = column.asDiagonal() * svd.matrixV().leftCols(rank) *
-              sizes.head(rank).cwiseInverse().asDiagonal() *
-              svd.matrixU().leftCols(rank).transpose() * row.asDiagonal();
+    free = column.asDiagonal() * svd.v.rightCols(n - rank);
+    inverse = column.asDiagonal() * svd.v.leftCols(rank) *
+              sizes.head(rank).cwiseInverse().asDiagonal() * svd.u.leftCols(rank).transpose() *
+              row.asDiagonal();
   }
 };
 
@@ -90,9 +90,9 @@ Reduced reduce(const Mechanism& mechanism, const SteadyMotion& at) {
   Eigen::Index acting = 0;
   MatrixXd basis = MatrixXd::Identity(g, g);
   if (observed.size() > 0) {
-    const Eigen::BDCSVD<MatrixXd> svd(observed, Eigen::ComputeFullV);
-    while (acting < svd.singularValues().size() && svd.singularValues()[acting] > none) ++acting;
-    basis = svd.matrixV();
+    const SingularValues svd(observed, Eigen::ComputeThinU | Eigen::ComputeFullV);
+    while (acting < svd.values.size() && svd.values[acting] > none) ++acting;
+    basis = svd.v;
   }
   r.kept = basis.leftCols(acting);
   r.dropped = basis.rightCols(g - acting);

@@ -25,7 +25,7 @@ struct CurveCorrection::Factors {
   std::vector<int> least, free;  ///< unknowns of y_0 that change least, and those that are free
   Vector rows, columns, scale;   ///< of F_0 …; of y_1 … and what is free; of what changes least
   Matrix by_y;                   ///< J_0 of scaled rows and unknowns
-  Eigen::BDCSVD<Matrix> svd;     ///< of J_+
+  SingularValues svd;            ///< of J_+
   Eigen::Index rank = 0;
   DenseLeastSquares constraints;  ///< N J_0
 
@@ -67,10 +67,9 @@ CurveCorrection::CurveCorrection(const CurveBlocks& at, int nu, double time_scal
   f.columns = columns.head(size + free);
   // Unknowns keep their own scale: what is least must not depend on how F is written.
   f.by_y = all.rightCols(least) * columns.tail(least).cwiseInverse().asDiagonal();
-  f.svd.compute(all.leftCols(size + free), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  f.svd.setThreshold(usable);
-  f.rank = f.svd.rank();
-  const auto null = f.svd.matrixU().rightCols(size - f.rank);
+  f.svd = SingularValues(all.leftCols(size + free));
+  f.rank = f.svd.rank(usable);
+  const auto null = f.svd.u.rightCols(size - f.rank);
   if (least > 0) f.constraints.compute(null.transpose() * f.by_y, usable);
 }
 
@@ -82,7 +81,7 @@ Matrix CurveCorrection::of(const Matrix& f) const {
   const Eigen::Index size = rest.size();
   Matrix change = Matrix::Zero(k.n, k.nu + 2);
   if (k.rank < size && !k.least.empty()) {
-    const Vector of_y = k.svd.matrixU().rightCols(size - k.rank).transpose() * rest;
+    const Vector of_y = k.svd.u.rightCols(size - k.rank).transpose() * rest;
     const Vector scaled = k.constraints.solve(of_y);
     for (std::size_t j = 0; j < k.least.size(); ++j) {
       const auto place = static_cast<Eigen::Index>(j);
@@ -90,7 +89,7 @@ Matrix CurveCorrection::of(const Matrix& f) const {
     }
     rest -= k.by_y * scaled;
   }
-  const Vector further = k.svd.solve(rest).cwiseProduct(k.columns);
+  const Vector further = k.svd.solve(rest, k.rank).cwiseProduct(k.columns);
   for (int j = 1; j <= k.nu + 1; ++j)
     change.col(j) = further.segment((j - 1) * k.n, k.n) / std::pow(k.time, j);
   for (std::size_t j = 0; j < k.free.size(); ++j)

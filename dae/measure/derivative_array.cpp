@@ -38,7 +38,7 @@ class Array {
     found.differentiations = nu;
     found.equations = rows;
     double before = std::numeric_limits<double>::infinity();
-    Eigen::BDCSVD<Matrix> svd;
+    SingularValues svd;
     for (int correction = 0;; ++correction) {
       blocks_.emplace(system_, t_, curve_);
       Matrix g = jacobian(nu);
@@ -54,14 +54,13 @@ class Array {
         size.segment((j - 1) * n, n) = curve_.col(j) * std::pow(time_, j);
       size.array() /= columns.array();
       found.residual = f.cwiseAbs().maxCoeff() / (1 + size.cwiseAbs().maxCoeff());
-      svd.compute(g, Eigen::ComputeThinU | Eigen::ComputeFullV);
+      svd = SingularValues(g);
       // As good as it gets: solved, or no longer falling.
       if (found.residual <= solved || correction == most_corrections ||
           (found.residual < consistent && found.residual > 0.5 * before))
         break;
       before = found.residual;
-      svd.setThreshold(of_corrections);
-      const Vector delta = svd.solve(-f).cwiseProduct(columns);
+      const Vector delta = svd.solve(-f, svd.rank(of_corrections)).cwiseProduct(columns);
       for (int j = 1; j <= nu + 1; ++j)
         curve_.col(j) += delta.segment((j - 1) * n, n) / std::pow(time_, j);
     }
@@ -91,19 +90,16 @@ class Array {
 
   /// The kernel's part in y_1: K its orthonormal basis, K_1 the first N rows. Directions of y'
   /// still free are rank K_1, and y'_i is free where row i of K_1 is not zero.
-  void decide(const Eigen::BDCSVD<Matrix>& svd, ArrayLevel& found) const {
+  void decide(const SingularValues& svd, ArrayLevel& found) const {
     const int n = system_.size;
-    const RankFound whole = rank_by_gap(svd.singularValues(), svd.singularValues()[0]);
+    const RankFound whole = rank_by_gap(svd.values, svd.values[0]);
     found.rank = whole.rank;
     found.constraints = found.equations - whole.rank;
     found.gap = whole.dropped <= clear_zero ? whole.gap() : 1;
     found.determined.assign(static_cast<std::size_t>(n), true);
     if (found.constraints == 0) return;
-    const Matrix first = svd.matrixV().topRightCorner(n, found.constraints);
-    // By Jacobi's rotations: of values that are equal but for rounding, the ones and zeros here,
-    // BDCSVD of Eigen 3.4 returned one zero as 0.08.
-    const Eigen::JacobiSVD<Matrix> parts(first);
-    const RankFound free = rank_by_gap(parts.singularValues(), 1.0);
+    const Matrix first = svd.v.topRightCorner(n, found.constraints);
+    const RankFound free = rank_by_gap(SingularValues(first).values, 1.0);
     found.undetermined = free.rank;
     const double middle = std::sqrt(free.kept * free.dropped);
     found.gap = std::min(found.gap, free.gap());

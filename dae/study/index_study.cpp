@@ -31,8 +31,8 @@ RankFound rank_of(Eigen::MatrixXd matrix) {
   if (matrix.size() == 0) return {};
   Eigen::VectorXd none = Eigen::VectorXd::Zero(matrix.rows());
   equilibrate(matrix, none);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix);
-  return rank_by_gap(svd.singularValues(), svd.singularValues()[0]);
+  const Eigen::VectorXd values = SingularValues(matrix).values;
+  return rank_by_gap(values, values[0]);
 }
 
 /// The verdict of kkt/loop_rank.h.
