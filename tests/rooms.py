@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draws the graph of includes between the folders of core and dae, and compares it with docs/reference/rooms.md.
+"""Draws the graph of includes between the folders of core and dae, and compares it with docs/reference/rooms.md;
+looks for two types of one name in headers, that linkers would take for one.
 
     tests/rooms.py [TOP]
 
@@ -14,6 +15,7 @@ from pathlib import Path
 
 DRAWING = "docs/reference/rooms.md"
 PICTURE = "docs/figures/rooms.svg"
+TYPE = re.compile(r"^(?:namespace ([\w:]+) \{|(?:struct|class|enum|enum class) (\w+)(?: final)?(?: : .*)? *\{)", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^">]+)[">]', re.MULTILINE)
 
 
@@ -32,6 +34,20 @@ def arrows(top):
                 if a != b:
                     found.setdefault((a, b), []).append((file.relative_to(top), aim.resolve().relative_to(top)))
     return found
+
+
+def namesakes(top):
+    """[(type, [header, …])] of types that more than one header defines in one namespace."""
+    found = {}
+    for part in ("core", "dae"):
+        for file in sorted((top / part).rglob("*.h")):
+            space = ""
+            for opened, name in TYPE.findall(file.read_text(encoding="utf-8")):
+                if opened:
+                    space = opened
+                else:
+                    found.setdefault(f"{space}::{name}", []).append(file.relative_to(top).as_posix())
+    return [(name, files) for name, files in sorted(found.items()) if len(files) > 1]
 
 
 def drawing(text):
@@ -116,6 +132,7 @@ def main():
             faults.append(f"'{a}' → '{b}': {example}, against the order of {DRAWING}; expected '{b}' above '{a}'")
     faults += [f"'{a}' → '{b}' is in {DRAWING}; no file includes so" for a, b in sorted(drawn - set(found))]
     faults += [f"'{room}' has no row in {DRAWING}" for room in sorted({a for pair in found for a in pair} - set(rooms))]
+    faults += [f"{name} is defined in {' and in '.join(files)}" for name, files in namesakes(top)]
     file = top / PICTURE
     if not faults and (not file.is_file() or file.read_text(encoding="utf-8") != picture(rooms, drawn)):
         faults.append(f"{PICTURE} is not the picture of {DRAWING}; expected that of tests/rooms.py --svg")

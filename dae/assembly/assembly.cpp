@@ -214,7 +214,7 @@ class Assembler {
 
   /// That rates which are free are those of motions.
   void expect_motions(Assembly& a) {
-    const SecondOrder found = second_order(loops_, t_, a.start.q, a.rank);
+    const Rigidity found = second_order(loops_, t_, a.start.q, a.rank);
     e().place(t_, a.start.q.data());
     if (found.stuck.size() == 0) return;
     const std::string words = in_words(mechanism_, found);

@@ -1,5 +1,6 @@
 #include <momenta/dae/assembly/quadratic_forms.h>
-#include <momenta/dae/dense/decompositions.h>
+
+#include <Eigen/Eigenvalues>
 
 namespace momenta {
 

@@ -1,10 +1,10 @@
 #include <momenta/dae/assembly/quadratic_forms.h>
 #include <momenta/dae/assembly/second_order.h>
-#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/dense/least_squares.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/loop_word.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,8 +29,8 @@ class SecondOrderForms {
   SecondOrderForms(ScaledLoops& loops, double t, const VectorXd& q)
       : loops_(loops), mechanism_(loops.mechanism()), e_(loops.evaluation()), t_(t), q_(q) {}
 
-  SecondOrder find(int rank) {
-    SecondOrder found;
+  Rigidity find(int rank) {
+    Rigidity found;
     const auto m = mechanism_.m(), n = mechanism_.nv();
     if (static_cast<double>(m) * n > most_entries || n - rank > most_free) return found;
     e_.place(t_, q_.data());
@@ -165,7 +165,7 @@ class SecondOrderForms {
     return forms;
   }
 
-  void judge(const QuadraticForms& forms, const MatrixXd& curved, SecondOrder& found) {
+  void judge(const QuadraticForms& forms, const MatrixXd& curved, Rigidity& found) {
     const MatrixXd zeros = common_zeros(forms);
     const Eigen::Index n = forms.size(), rest = n - zeros.cols();
     if (rest == 0) return;
@@ -210,11 +210,11 @@ class SecondOrderForms {
 
 }  // namespace
 
-SecondOrder second_order(ScaledLoops& loops, double t, const VectorXd& q, int rank) {
+Rigidity second_order(ScaledLoops& loops, double t, const VectorXd& q, int rank) {
   return SecondOrderForms(loops, t, q).find(rank);
 }
 
-std::string in_words(const Mechanism& mechanism, const SecondOrder& found) {
+std::string in_words(const Mechanism& mechanism, const Rigidity& found) {
   constexpr double takes_part = 1e-6;
   constexpr int most_named = 6;
   Eigen::Index first = 0;

@@ -25,7 +25,7 @@
 
 namespace momenta {
 
-struct SecondOrder {
+struct Rigidity {
   Eigen::VectorXd stuck;  ///< rates (nv) free to first order that no motion has; empty: none found
   bool certain = true;    ///< a form tells; false: only that no such motion was found
   bool all = false;       ///< whether no y was found that the forms allow, but where all are zero
@@ -36,9 +36,9 @@ struct SecondOrder {
 /// At (t, q) where the equations of positions have rank `rank` in all rates, less than their
 /// number. Nothing is found of more than 10⁵ entries of Φ_q, or where more than 60 rates are free
 /// or the forms depend on more than 12 of them. O((n + m)³)
-SecondOrder second_order(ScaledLoops& loops, double t, const Eigen::VectorXd& q, int rank);
+Rigidity second_order(ScaledLoops& loops, double t, const Eigen::VectorXd& q, int rank);
 
 /// "at A.u = 1, B.u = -2 …", what is stuck and by which loop.
-std::string in_words(const Mechanism& mechanism, const SecondOrder& found);
+std::string in_words(const Mechanism& mechanism, const Rigidity& found);
 
 }  // namespace momenta

@@ -1,6 +1,6 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/run_label.h>
-#include <momenta/dae/study/branches.h>
+#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/study/work_study.h>
 #include <momenta/dae/text/number_text.h>
 
@@ -25,7 +25,7 @@ std::string method(const RunResult& run, const std::string& label) {
 }  // namespace
 
 std::string advice(const StudyResult& study) {
-  if (branches_of(study.runs).differ) return "";
+  if (ambiguity_of(study.runs).differ) return "";
   const bool reference = !study.reference.empty();
   const auto labels = run_labels(study, false);
   if (std::none_of(study.runs.begin(), study.runs.end(),

@@ -1,6 +1,6 @@
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/run_label.h>
-#include <momenta/dae/study/branches.h>
+#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
@@ -306,8 +306,8 @@ std::string reservations(const StudyResult& study) {
     if (off.size() > named) text += "; and " + std::to_string(off.size() - named) + " more";
     text += ".";
   }
-  if (const Branches branches = branches_of(study.runs); branches.differ)
-    text += (text.empty() ? "" : " ") + as_sentence(in_words(branches));
+  if (const Ambiguity ambiguity = ambiguity_of(study.runs); ambiguity.differ)
+    text += (text.empty() ? "" : " ") + as_sentence(in_words(ambiguity));
   return text;
 }
 
@@ -315,7 +315,7 @@ std::string answer(const StudyResult& study) {
   if (study.runs.empty()) return "No run was made.";
   auto done = runs_where(study, reliable);
   std::string text = reservations(study);
-  if (done.empty() || branches_of(study.runs).differ) return text;
+  if (done.empty() || ambiguity_of(study.runs).differ) return text;
   choose_drift(done);
   for (const std::string& sentence : {first_sentence(done), best_sentence(done)})
     if (!sentence.empty()) text += (text.empty() ? "" : " ") + sentence;

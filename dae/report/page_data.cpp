@@ -6,7 +6,7 @@
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/thinning.h>
-#include <momenta/dae/study/branches.h>
+#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <algorithm>
@@ -120,7 +120,7 @@ Json page_data(const StudyResult& study) {
           {"command", study.command},
           {"reference", study.reference},
           {"drift_study", study.drift_study},
-          {"ambiguous", branches_of(study.runs).differ},
+          {"ambiguous", ambiguity_of(study.runs).differ},
           {"plan", pairs_json(study.plan)},
           {"environment", environment_json(study.environment)},
           {"palette", palette},

@@ -1,6 +1,6 @@
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/branches.h>
+#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/study/rank_at_start.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
@@ -136,7 +136,7 @@ double judged_error(const RunResult& run, bool has_reference) {
 
 std::vector<std::size_t> pareto_front(const std::vector<RunResult>& runs, bool has_reference) {
   std::vector<std::size_t> order;
-  if (branches_of(runs).differ) return order;
+  if (ambiguity_of(runs).differ) return order;
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (runs[i].status == "done" && reliable(runs[i]) &&
         std::isfinite(judged_error(runs[i], has_reference)) && std::isfinite(runs[i].cpu_s))

@@ -7,7 +7,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/study/branches.h>
+#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/study/departures.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/work_study.h>
@@ -186,7 +186,7 @@ TEST(Departures, BranchesThatDifferAreSaid) {
   RunResult b = a;
   b.settings.form = "acceleration";
   b.last_pose = {0.3, 0.2};
-  EXPECT_FALSE(branches_of({a, b}).differ);  // no singular pose: one of them is inaccurate
+  EXPECT_FALSE(ambiguity_of({a, b}).differ);  // no singular pose: one of them is inaccurate
   a.singular_crossings = {{1.2, 1e-9, false}, {0.5, 1e-5, false}};
   StudyResult study;
   study.runs = {a, b};
@@ -195,7 +195,7 @@ TEST(Departures, BranchesThatDifferAreSaid) {
   EXPECT_EQ(conclusion(study).find("drift"), std::string::npos) << conclusion(study);
   EXPECT_TRUE(pareto_front(study.runs, false).empty());
   b.last_pose = a.last_pose;
-  EXPECT_FALSE(branches_of({a, b}).differ);
+  EXPECT_FALSE(ambiguity_of({a, b}).differ);
 }
 
 /// The end is no scale of the motion: a run to a time that no run reaches takes the steps of one to

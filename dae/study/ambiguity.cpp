@@ -1,4 +1,4 @@
-#include <momenta/dae/study/branches.h>
+#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 
 namespace momenta {
 
-Branches branches_of(const std::vector<RunResult>& runs) {
+Ambiguity ambiguity_of(const std::vector<RunResult>& runs) {
   constexpr double another = 0.1;  // pose; no tolerance leaves as much where there is one motion
   double tightest = std::numeric_limits<double>::infinity();
   for (const RunResult& run : runs)
     if (!(run.settings.step > 0)) tightest = std::min(tightest, run.settings.rtol);
-  Branches found;
+  Ambiguity found;
   const RunResult* first = nullptr;
   for (const RunResult& run : runs) {
     const bool rung = run.settings.step > 0 ? std::isinf(tightest) : run.settings.rtol == tightest;
@@ -27,10 +27,10 @@ Branches branches_of(const std::vector<RunResult>& runs) {
   return found;
 }
 
-std::string in_words(const Branches& branches) {
-  return "the motion is ambiguous from t = " + compact(branches.from, 4) +
+std::string in_words(const Ambiguity& ambiguity) {
+  return "the motion is ambiguous from t = " + compact(ambiguity.from, 4) +
          " s: past the singular pose there runs ended on different branches, in poses " +
-         compact(branches.apart, 2) +
+         compact(ambiguity.apart, 2) +
          " rad or lengths of the scene apart, and none is compared with another";
 }
 

@@ -10,16 +10,16 @@
 
 namespace momenta {
 
-struct Branches {
+struct Ambiguity {
   bool differ = false;
   double from = not_measured;  ///< the first singular pose [s]
   double apart = 0;            ///< how far poses at the end are, in radians or lengths of the scene
 };
 
 /// Of the runs of the tightest tolerance that reached the end.
-Branches branches_of(const std::vector<RunResult>& runs);
+Ambiguity ambiguity_of(const std::vector<RunResult>& runs);
 
 /// One clause. @pre they differ
-std::string in_words(const Branches& branches);
+std::string in_words(const Ambiguity& ambiguity);
 
 }  // namespace momenta
