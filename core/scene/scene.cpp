@@ -68,12 +68,14 @@ std::string name_of(const EventSpec& event, std::size_t place) {
   return event.name.empty() ? "event " + std::to_string(place + 1) : event.name;
 }
 
-double length_of(const Scene& scene) {
+namespace {
+
+/// By body, the ground too, the diagonal of the box around what is on it: O(points).
+std::map<std::string, double> diagonals(const Scene& scene) {
   struct Points {
     Eigen::Vector3d low, high;
   };
-  std::map<std::string, Points> bodies;  // boxes around what is on each: O(points)
-  double length = 0;
+  std::map<std::string, Points> bodies;
   const auto on = [&](const std::string& body, const Eigen::Vector3d& x) {
     const auto [at, is_new] = bodies.try_emplace(body, Points{x, x});
     if (is_new) return;
@@ -95,10 +97,8 @@ double length_of(const Scene& scene) {
     for (const auto& point : curve.points) on(body, at + turn * point);
   };
   for (const LoopSpec& l : scene.loops) {
-    length = std::max(length, l.length);
     if (!ties_bodies(l)) continue;
     ends(l);
-    if (l.kind == LoopKind::rolling) length = std::max(length, l.radius);
     if (!l.curve.kind.empty()) outline(l.parent, l.origin_parent, l.rotation, l.curve);
     if (!l.child_curve.kind.empty())
       outline(l.child, l.origin_child, Eigen::Quaterniond::Identity(), l.child_curve);
@@ -108,9 +108,28 @@ double length_of(const Scene& scene) {
     if (f.kind == "wrench") on(f.body, f.point);
   }
   for (const MarkerSpec& m : scene.markers) on(m.body, m.point);
-  for (const auto& [name, points] : bodies)
-    length = std::max(length, (points.high - points.low).norm());
+  std::map<std::string, double> found;
+  for (const auto& [name, points] : bodies) found[name] = (points.high - points.low).norm();
+  return found;
+}
+
+}  // namespace
+
+double length_of(const Scene& scene) {
+  double length = 0;
+  for (const LoopSpec& l : scene.loops) {
+    length = std::max(length, l.length);
+    if (ties_bodies(l) && l.kind == LoopKind::rolling) length = std::max(length, l.radius);
+  }
+  for (const auto& [body, diagonal] : diagonals(scene)) length = std::max(length, diagonal);
   return length > 0 ? length : 1;
+}
+
+double length_of_bodies(const Scene& scene) {
+  double length = 0;
+  for (const auto& [body, diagonal] : diagonals(scene))
+    if (body != "ground") length = std::max(length, diagonal);
+  return length > 0 ? length : length_of(scene);
 }
 
 }  // namespace momenta

@@ -99,4 +99,8 @@ struct Scene {
 /// largest `length` of a loop if that is more; 1 when all of these are zero.
 double length_of(const Scene& scene);
 
+/// The largest diagonal of a body's box [m], the ground left out: how far what moves swings. The
+/// length of the scene where all of these are zero.
+double length_of_bodies(const Scene& scene);
+
 }  // namespace momenta

@@ -169,12 +169,15 @@ class Assembler {
       e().velocities(rate.data());
       u -= steps_.solve(rate.cwiseQuotient(row_)).cwiseProduct(column_);
     }
+    e().move(nullptr);
+    e().velocities(rate.data());
+    const double prescribed = rate.cwiseQuotient(row_).cwiseAbs().maxCoeff();
     e().move(u.data());
     e().velocities(rate.data());
     a.velocity_residual = rate.cwiseAbs().maxCoeff();
     double largest = 0;
     for (const double x : j) largest = std::max(largest, std::abs(x));
-    const double scale = 1 + std::max(given, fastest()) * (1 + largest);
+    const double scale = prescribed + std::max(given, fastest()) * (1 + largest);
     // Of redundant equations rates keep what the singular values that do not count leave.
     const bool known = a.rank == mechanism_.m() || a.kept > 0;
     const double left = std::max(1e-10, known ? 2 * a.dropped : rank_tolerance);

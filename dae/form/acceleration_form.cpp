@@ -8,7 +8,7 @@ namespace momenta {
 AccelerationForm::AccelerationForm(std::string name, const Mechanism& mechanism,
                                    const FormOptions& options, const Start& start,
                                    Feedback feedback, int solutions)
-    : OdeForm(std::move(name), mechanism, options),
+    : OdeForm(std::move(name), mechanism, options, start),
       feedback_(feedback),
       solutions_(solutions),
       nu_(multipliers_.size()),

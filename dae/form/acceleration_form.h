@@ -13,7 +13,7 @@ struct Feedback {
 };
 
 /// A repeated correction of positions ends with one of this size: its square is rounding [rad or
-/// m].
+/// lengths].
 inline constexpr double last_correction = 1e-8;
 /// And after so many.
 inline constexpr int most_corrections = 10;

@@ -18,8 +18,9 @@ namespace {
 class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public HalfExplicitParts {
  public:
   AccelerationIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("acceleration-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::velocities),
+      : DaeFormOf("acceleration-index2", mechanism,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, false, 1}, options, start,
+                  Unknowns::velocities),
         HalfExplicitParts(mechanism) {}
 
   template <class S>

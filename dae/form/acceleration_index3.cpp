@@ -20,8 +20,9 @@ namespace {
 class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public SecondOrder {
  public:
   AccelerationIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("acceleration-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::velocities),
+      : DaeFormOf("acceleration-index3", mechanism,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, false, 2}, options, start,
+                  Unknowns::velocities),
         penalty_(options.penalty),
         start_(start) {}
 

@@ -31,6 +31,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
                  const FormOptions& options, const Start& start, Unknowns unknowns)
     : layout_(layout),
       mechanism_(mechanism),
+      sizes_(mechanism, start),
       name_(std::move(name)),
       unknowns_(unknowns),
       start_(start),
@@ -48,8 +49,11 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
     if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
       gauge_.kappa = default_leak(mechanism, start);
   }
+  std::copy(sizes_.q.begin(), sizes_.q.end(), scale_.begin());
+  for (const int first : {layout_.x(), layout_.v()})
+    std::copy(sizes_.u.begin(), sizes_.u.end(), scale_.begin() + first);
   if (unknowns != Unknowns::velocities)
-    momentum_scales(*plain_.e, layout_.nv, scale_.data() + layout_.x());
+    sizes_.of_momenta(*plain_.e, start, scale_.data() + layout_.x());
   softened_about_.assign(static_cast<std::size_t>(layout.m), 0.0);
   if (layout.m > 0) find_redundancy(start);
   for (int i = layout_.s(); i < layout_.size(); ++i)
@@ -76,7 +80,11 @@ void DaeForm::find_redundancy(const Start& start) {
   // σ it cannot be much smaller: what rounding leaves in redundant rows, over ε, shortens steps.
   const double unweakened = momentum_like() ? masses_far_apart : 1e2;
   const double weaker = std::max(1.0, mechanism_.mass_spread() / unweakened);
-  for (double& epsilon : epsilon_) epsilon *= 1e-9 / weaker;
+  for (double& epsilon : epsilon_) epsilon *= std::pow(sizes_.rate, -layout_.below) * 1e-9 / weaker;
+  double heaviest = 0;
+  for (const double inertia : inertia_) heaviest = std::max(heaviest, inertia);
+  softness_of_mu_ = 1e-3 * power_of_ten(heaviest > 0 ? heaviest : 1, 0.2512) *
+                    std::pow(sizes_.rate, layout_.below - 1);
 }
 
 /// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it,

@@ -3,7 +3,7 @@
 // by dual numbers.
 //
 //   y = ( q | x | v | s | μ ),  x = p or v; v, s, μ only where the form has them; s = σ or λ
-// Rows: nv kinematic or momentum rows; one row q·q̇ + (|q|² − 1)/2 = 0 per quaternion; nv dynamic
+// Rows: nv kinematic or momentum rows; one row q·q̇ + ρ (|q|² − 1)/2 = 0 per quaternion; nv dynamic
 // rows; then the form's other rows. A form writes its equations once, as a template on the scalar:
 // with double they are the residual, with dual numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time,
 // with sparse dual numbers the entries of a local matrix in its place (local_rows.h), with series
@@ -23,6 +23,7 @@ struct DaeLayout {
   int nq = 0, nv = 0, m = 0;
   bool explicit_velocity = false;    ///< v beside p
   bool position_multiplier = false;  ///< μ
+  int below = 0;  ///< derivatives between the rows that determine s and Φ̇ of σ, Φ̈ of λ
   int x() const { return nq; }
   int v() const { return explicit_velocity ? nq + nv : nq; }
   int s() const { return nq + nv + (explicit_velocity ? nv : 0); }
@@ -73,6 +74,7 @@ class DaeForm : public Form, public DaeSystem {
   bool start(double t, double* y, double* ydot) override;
   bool differential(int i) const override;
   double scale(int i) const override;
+  double horizon() const override { return 1e6 / sizes_.rate; }
   Weight weight(int i) const override;
   bool near_singular(double t, const double* y) override;
   OdeSystem* ode_restart(double t, const double* y, double* state) override;
@@ -102,12 +104,13 @@ class DaeForm : public Form, public DaeSystem {
 
   DaeLayout layout_;
   const Mechanism& mechanism_;
+  NaturalSizes sizes_;
 
  private:
   /// Redundant or singular loops at the start: −ε (s − s₀) on the rows that determine s (and
-  /// −10⁻³ ε μ), so that the Newton matrix stays regular; s₀ is s at the start, which is consistent
-  /// so. Its ε s₀ would open Φ there at once, and a first step h answer by u ~ ε s₀/h. The bias on
-  /// u is ε (s − s₀), which the gauge keeps small.
+  /// −10⁻³ ε μ, by units of mass and time), so that the Newton matrix stays regular; s₀ is s at the
+  /// start, which is consistent so. Its ε s₀ would open Φ there at once, and a first step h answer
+  /// by u ~ ε s₀/h. The bias on u is ε (s − s₀), which the gauge keeps small.
   template <class S>
   void regularise(const S* y, S* r) const {
     if (epsilon_.empty()) return;
@@ -117,7 +120,7 @@ class DaeForm : public Form, public DaeSystem {
       r[layout_.size() - rows + i] -=
           epsilon * (y[layout_.s() + i] - softened_about_[static_cast<std::size_t>(i)]);
       if (layout_.position_multiplier)
-        r[layout_.size() - layout_.m + i] -= (1e-3 * epsilon) * y[layout_.mu() + i];
+        r[layout_.size() - layout_.m + i] -= (softness_of_mu_ * epsilon) * y[layout_.mu() + i];
     }
   }
   bool evaluate_columns(double t, const double* y, const double* ydot, double c,
@@ -143,6 +146,7 @@ class DaeForm : public Form, public DaeSystem {
   Gauge gauge_;
   Start start_;
   std::vector<double> scale_;
+  double softness_of_mu_ = 0;    ///< ε of μ over that of s [kg, or kg s]
   std::vector<double> inertia_;  ///< diagonal of M at the start
   DaeScratch<double> plain_;
   DaeScratch<Dual8> dual_;  ///< filled when first asked for, as all that follow
@@ -272,15 +276,17 @@ class DaeFormOf : public DaeForm {
   }
 
  private:
-  /// One row per quaternion: its length returns to 1 within a second, without touching the motion.
+  /// One row per quaternion: its length returns to 1 within the time scale of the motion, without
+  /// touching that.
   template <class S>
   S* quaternion_rows(const S* q, const S* qdot, S* r) const {
     if (!mechanism_.plan().quasi_velocities) return r;
     for (const auto& b : mechanism_.tree().bodies) {
       if (!b.has_quaternion()) continue;
       const int first = b.q + b.nq - 4;
-      S row = S(-0.5);
-      for (int i = first; i < first + 4; ++i) row += q[i] * qdot[i] + 0.5 * (q[i] * q[i]);
+      const double half = 0.5 * sizes_.rate;
+      S row = S(-half);
+      for (int i = first; i < first + 4; ++i) row += q[i] * qdot[i] + half * (q[i] * q[i]);
       *r++ = row;
     }
     return r;

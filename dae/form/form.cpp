@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <stdexcept>
 
@@ -126,33 +124,6 @@ std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechan
         (e.kind == Kind::dae ? "no accelerations among its unknowns" : "no place for it") +
         "; expected 'momentum', 'acceleration' or another form");
   return e.make(mechanism, options, start);
-}
-
-double default_leak(const Mechanism& mechanism, const Start& start) {
-  if (mechanism.m() == 0) return 0;
-  const auto e = mechanism.evaluation<double>();
-  const auto nv = static_cast<std::size_t>(mechanism.nv());
-  std::vector<double> force(nv), inertia(nv);
-  e->place(start.t, start.q.data());
-  e->mass_diagonal(inertia.data());
-  e->constraint_forces(start.lambda.data(), force.data());
-  double acceleration = 0;
-  for (std::size_t i = 0; i < nv; ++i)
-    if (inertia[i] > 0) acceleration = std::max(acceleration, std::abs(force[i]) / inertia[i]);
-  const double rate = start.u.size() > 0 ? start.u.cwiseAbs().maxCoeff() : 0;
-  const double kappa = std::max(std::sqrt(acceleration), rate);
-  if (!(kappa > 0) || !std::isfinite(kappa)) return 1.0;
-  // Two digits are more than the choice deserves, and make a rate that can be typed again.
-  char digits[16];
-  std::snprintf(digits, sizeof digits, "%.1e", kappa);
-  return std::strtod(digits, nullptr);
-}
-
-void momentum_scales(Evaluation<double>& e, int nv, double* scale) {
-  e.mass_diagonal(scale);
-  const double largest = nv > 0 ? *std::max_element(scale, scale + nv) : 0;
-  for (int i = 0; i < nv; ++i)
-    if (!(scale[i] > 1e-14 * largest)) scale[i] = largest > 0 ? largest : 1;
 }
 
 }  // namespace momenta

@@ -118,14 +118,10 @@ bool is_dae_form(const std::string& name);
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
                                 const FormOptions& options, const Start& start);
 
-/// The typical size of each momentum (nv) at the configuration placed in `e`: M_ii times a rate of
-/// 1 rad/s or 1 m/s. The momentum of a joint that moves no mass, such as that of a massless
-/// coupler, consists of loop impulses alone, which are as large as those of other joints; there the
-/// size is that of the largest M_ii.
-void momentum_scales(Evaluation<double>& e, int nv, double* scale);
-
 /// A leak rate that fits the mechanism [1/s]: the square root of the largest acceleration that the
-/// loops cause at the start. The optimum is flat over a decade on either side.
+/// loops cause at the start, slides in lengths of the scene, or the fastest turn if that is more;
+/// where both are zero that of weight, or ten in the time of a run. The optimum is flat over a
+/// decade on either side.
 double default_leak(const Mechanism& mechanism, const Start& start);
 
 }  // namespace momenta

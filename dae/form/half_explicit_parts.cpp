@@ -58,7 +58,7 @@ bool HalfExplicitParts::rub(double t, const double* q, const double* u) {
 
 /// A correction below last_correction leaves its square. One that does not shrink is no way there:
 /// the step was too long.
-bool HalfExplicitParts::meet_positions(double t, double* q) {
+bool HalfExplicitParts::meet_positions(double t, double* q, const NaturalSizes& natural) {
   Work& w = work();
   if (!w.solver) return true;
   normalise(q);
@@ -70,9 +70,10 @@ bool HalfExplicitParts::meet_positions(double t, double* q) {
     double size = 1, change = 0;
     for (std::size_t i = 0; i < w.there.size(); ++i) {
       q[i] += w.there[i];
-      size = std::max(size, std::abs(q[i]));
+      size = std::max(size, std::abs(q[i]) / natural.q[i]);
     }
-    for (const double d : w.delta) change = std::max(change, std::abs(d) / size);
+    for (std::size_t i = 0; i < w.delta.size(); ++i)
+      change = std::max(change, std::abs(w.delta[i]) / (natural.way[i] * size));
     if (change <= last_correction) return true;
     if (!(change < 0.5 * before)) break;
     before = change;

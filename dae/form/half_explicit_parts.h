@@ -4,6 +4,7 @@
 // right-hand side of the ODE form; SplitKkt solves for the z that lead onto the constraint at the
 // next stage.
 
+#include <momenta/dae/form/natural_sizes.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/split_kkt.h>
@@ -44,7 +45,7 @@ class HalfExplicitParts : public HalfExplicit {
   /// Finds the friction of bearings at (t, q, u), where there are such.
   bool rub(double t, const double* q, const double* u);
   /// Φ(q, t) = 0 by q + δ, M δ + Φ_qᵀν = 0, Newton's method.
-  bool meet_positions(double t, double* q);
+  bool meet_positions(double t, double* q, const NaturalSizes& natural);
   /// Φ_q v + Φ_t = 0 by M v + Φ_qᵀν = M v_before, linear.
   bool meet_velocities(double t, const double* q, double* v);
   /// Copies z as what faded rows keep, for a solution that writes into z.

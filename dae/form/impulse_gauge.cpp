@@ -14,11 +14,8 @@ ImpulseGauge::Measure::Measure(const Mechanism& mechanism) : e(mechanism.evaluat
 }
 
 ImpulseGauge::ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge,
-                           const Start& start)
-    : of_(mechanism), places_(layout), rule_(gauge) {
-  // The rate at the start may be that of a mechanism at rest, whose loops bear little.
-  if (mechanism.m() > 0) rate_ = std::clamp(default_leak(mechanism, start), least_rate, 1.0);
-}
+                           const NaturalSizes& natural)
+    : of_(mechanism), places_(layout), rule_(gauge), natural_(natural) {}
 
 ImpulseGauge::Measure& ImpulseGauge::measure() {
   if (!measure_) measure_ = std::make_shared<Measure>(of_);
@@ -61,11 +58,10 @@ void ImpulseGauge::measure_at(double t, const double* y, const double* ydot, dou
   w.t = t;
   std::copy_n(y, w.q.size(), w.q.data());
   w.e->joint_rates(y, ydot, w.u.data());
-  const auto weight = [&](double size) {
-    return [=](double x) { return 1 / (atol * size + rtol * std::abs(x)); };
-  };
-  std::transform(w.q.begin(), w.q.end(), w.coordinate_weight.begin(), weight(1));
-  std::transform(w.u.begin(), w.u.end(), w.rate_weight.begin(), weight(rate_));
+  const auto weight = [&](double x, double size) { return 1 / (atol * size + rtol * std::abs(x)); };
+  for (std::size_t i = 0; i < w.q.size(); ++i)
+    w.coordinate_weight[i] = weight(w.q[i], natural_.q[i]);
+  for (std::size_t i = 0; i < w.u.size(); ++i) w.rate_weight[i] = weight(w.u[i], natural_.u[i]);
 }
 
 double ImpulseGauge::coordinate_squares(const double* e) {

@@ -3,6 +3,7 @@
 // values, and the norm of what moves (dae/solver/gauge_symmetry.h).
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/natural_sizes.h>
 #include <momenta/dae/solver/gauge_symmetry.h>
 
 #include <memory>
@@ -12,9 +13,9 @@ namespace momenta {
 
 class ImpulseGauge : public GaugeSymmetry {
  public:
-  /// Of a form with that layout and gauge.
+  /// Of a form with that layout and gauge; `natural` is kept by reference.
   ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge,
-               const Start& start);
+               const NaturalSizes& natural);
 
   bool resets() const override { return rule_.kind == Gauge::Kind::reset && places_.m > 0; }
   int impulse_count() const override { return places_.m; }
@@ -39,9 +40,8 @@ class ImpulseGauge : public GaugeSymmetry {
 
   const Mechanism& of_;
   DaeLayout places_;
-  static constexpr double least_rate = 1e-3;
   Gauge rule_;
-  double rate_ = 1;  ///< of a mechanism slower than 1/s, its own [1/s]: rates weigh atol times it
+  const NaturalSizes& natural_;
   std::shared_ptr<Measure> measure_;
 };
 

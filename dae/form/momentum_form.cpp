@@ -9,7 +9,7 @@ namespace momenta {
 
 MomentumForm::MomentumForm(std::string name, const Mechanism& mechanism, const FormOptions& options,
                            const Start& start, double beta, int solutions)
-    : OdeForm(std::move(name), mechanism, options),
+    : OdeForm(std::move(name), mechanism, options, start),
       gauge_(options.gauge),
       beta_(has_loops() ? beta : 0),
       solutions_(solutions),
@@ -20,7 +20,7 @@ MomentumForm::MomentumForm(std::string name, const Mechanism& mechanism, const F
   if (has_loops()) solver_->stabilise(beta_);
   if (solutions_ > 1 && start.residue.size() > 0) not_closed_.assign(multipliers_.size(), 0.0);
   e_->place(start.t, start.q.data());
-  momentum_scales(*e_, mechanism.nv(), scale_.data() + mechanism.nq());
+  sizes_.of_momenta(*e_, start, scale_.data() + mechanism.nq());
   if (friction_) return;  // by λ and u̇, which momentum-index1 does not have
   FormOptions equations = options;
   equations.gauge = leak() > 0 ? gauge_ : Gauge{};  // what happens after steps is not in f

@@ -20,7 +20,7 @@ class MomentumIndex1 final : public DaeFormOf<MomentumIndex1>, public ImpulseGau
   MomentumIndex1(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-index1", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
                   options, start, Unknowns::impulses),
-        ImpulseGauge(mechanism, layout_, gauge(), start),
+        ImpulseGauge(mechanism, layout_, gauge(), sizes_),
         beta_(mechanism.m() > 0 ? options.beta : 0) {}
 
   double beta() const override { return beta_; }

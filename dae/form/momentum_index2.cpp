@@ -26,10 +26,11 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
                              public ImpulseGauge {
  public:
   MomentumIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("momentum-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::impulses),
+      : DaeFormOf("momentum-index2", mechanism,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, false, 1}, options, start,
+                  Unknowns::impulses),
         HalfExplicitParts(mechanism),
-        ImpulseGauge(mechanism, layout_, gauge(), start) {}
+        ImpulseGauge(mechanism, layout_, gauge(), sizes_) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
@@ -52,7 +53,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
     return true;
   }
 
-  bool meet(double t, double* y) override { return meet_positions(t, y); }
+  bool meet(double t, double* y) override { return meet_positions(t, y, sizes_); }
 
   /// Newton's method for u and σ in
   ///   M u + Φ_qᵀσ = p,  Φ(q̄) = 0,  q̄ = q_base + w q̇(u),
@@ -84,7 +85,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
       double size = 1;
       for (std::size_t i = 0; i < work.there.size(); ++i) {
         work.there[i] = base[i] + w * f[i];
-        size = std::max(size, std::abs(work.there[i]));
+        size = std::max(size, std::abs(work.there[i]) / sizes_.q[i]);
       }
       ahead.place(t_next, work.there.data());
       ahead.positions(work.g.data());
@@ -107,7 +108,8 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
         for (int i = 0; i < layout_.m; ++i) z[i] += work.correction[static_cast<std::size_t>(i)];
       }
       double change = 0;
-      for (const double d : work.delta) change = std::max(change, std::abs(w * d) / size);
+      for (std::size_t i = 0; i < work.delta.size(); ++i)
+        change = std::max(change, std::abs(w * work.delta[i]) / (sizes_.way[i] * size));
       if (!std::isfinite(change)) return failed("a value that is not a finite number came up");
       if (!exact && count == enough) break;
       // Rounding; below its square root a correction that shrinks no more is rounding too.

@@ -20,8 +20,9 @@ namespace {
 class MomentumIndex3 final : public DaeFormOf<MomentumIndex3> {
  public:
   MomentumIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("momentum-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::momenta) {}
+      : DaeFormOf("momentum-index3", mechanism,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, false, 2}, options, start,
+                  Unknowns::momenta) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -21,7 +21,7 @@ class MomentumStabilised final : public DaeFormOf<MomentumStabilised>, public Im
       : DaeFormOf("momentum-stabilised", mechanism,
                   {mechanism.nq(), mechanism.nv(), mechanism.m(), true, true}, options, start,
                   Unknowns::impulses),
-        ImpulseGauge(mechanism, layout_, gauge(), start) {}
+        ImpulseGauge(mechanism, layout_, gauge(), sizes_) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

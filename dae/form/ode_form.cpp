@@ -14,11 +14,14 @@ constexpr double dense_entries = 3;
 
 }  // namespace
 
-OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options)
+OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options,
+                 const Start& start)
     : name_(std::move(name)),
       mechanism_(mechanism),
       options_(options),
-      e_(mechanism.evaluation<double>()) {
+      e_(mechanism.evaluation<double>()),
+      sizes_(mechanism, start),
+      scale_(sizes_.q) {
   const auto nv = static_cast<std::size_t>(mechanism.nv()),
              m = static_cast<std::size_t>(mechanism.m());
   always_faded_ = mechanism.m();
@@ -30,7 +33,7 @@ OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions
   multipliers_.assign(m, 0.0);
   centre_.assign(m, 0.0);
   correction_.assign(static_cast<std::size_t>(mechanism.nq()), 0.0);
-  scale_.assign(static_cast<std::size_t>(size()), 1.0);
+  scale_.insert(scale_.end(), sizes_.u.begin(), sizes_.u.end());
 }
 
 void OdeForm::solves(std::function<std::unique_ptr<Form>()> equations) {
@@ -102,12 +105,12 @@ void OdeForm::note_pivots() {
 double OdeForm::mean_square(const double* q, const double* e, const double* u, const double* v,
                             double rtol, double atol) const {
   double sum = 0;
-  const auto add = [&](double error, double value) {
-    const double x = error / (atol + rtol * std::abs(value));
+  const auto add = [&](double error, double value, double scale) {
+    const double x = error / (atol * scale + rtol * std::abs(value));
     sum += x * x;
   };
-  for (int i = 0; i < mechanism_.nq(); ++i) add(e[i], q[i]);
-  for (int i = 0; i < mechanism_.nv(); ++i) add(v[i], u[i]);
+  for (std::size_t i = 0; i < sizes_.q.size(); ++i) add(e[i], q[i], sizes_.q[i]);
+  for (std::size_t i = 0; i < sizes_.u.size(); ++i) add(v[i], u[i], sizes_.u[i]);
   return sum / size();
 }
 

@@ -3,6 +3,7 @@
 // the position correction.
 
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/form/natural_sizes.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
@@ -19,13 +20,17 @@ struct NoStateAtStart : std::runtime_error {
 
 class OdeForm : public Form, public OdeSystem {
  public:
-  OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options);
+  /// Of u until a form says otherwise.
+  OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options,
+          const Start& start);
 
   const std::string& name() const override { return name_; }
   bool is_dae() const override { return false; }
   OdeSystem* ode() override { return this; }
   int size() const override { return mechanism_.nq() + mechanism_.nv(); }
   double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
+  double time_scale() const override { return 1 / sizes_.rate; }
+  double horizon() const override { return 1e6 / sizes_.rate; }
   /// Of the run itself; those made for looking at samples are not counted.
   long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
   /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded, and in
@@ -99,7 +104,7 @@ class OdeForm : public Form, public OdeSystem {
   /// Its two halves: delta_ at q, q ← q + q̇(delta_).
   bool solve_correction(double t, const double* q);
   void take_correction(double* q);
-  /// Of errors e of q (nq) and v of u (nv), each over atol + rtol times its size.
+  /// Of errors e of q (nq) and v of u (nv), each over atol times its scale + rtol times its size.
   double mean_square(const double* q, const double* e, const double* u, const double* v,
                      double rtol, double atol) const;
   /// Quaternions of q back to unit length.
@@ -126,7 +131,8 @@ class OdeForm : public Form, public OdeSystem {
   std::unique_ptr<BearingFriction> friction_;  ///< null without bearings
   std::unique_ptr<LocalJacobian> solved_;      ///< see local_jacobian
   std::vector<double> u_, multipliers_, centre_, delta_, work_, correction_;
-  std::vector<double> scale_;
+  NaturalSizes sizes_;
+  std::vector<double> scale_;  ///< of y
 };
 
 std::unique_ptr<OdeForm> make_momentum(const Mechanism&, const FormOptions&, const Start&);

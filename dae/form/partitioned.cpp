@@ -27,6 +27,7 @@
 #include <momenta/dae/kkt/coordinate_jacobian.h>
 #include <momenta/dae/kkt/coordinate_split.h>
 #include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,15 +38,15 @@ namespace momenta {
 namespace {
 
 constexpr int most_corrections = 12;
-constexpr double last_correction = 1e-8;  // [rad or m]: its square is rounding
-constexpr double off_tangent = 0.3;       // [rad or m]: the second correction, at most
+constexpr double last_correction = 1e-8;  // [rad or lengths]: its square is rounding
+constexpr double off_tangent = 0.3;       // [rad or lengths]: the second correction, at most
 constexpr double worst_growth = 1.5;      // of dependent coordinates over independent ones
-constexpr double opened = 1e-6;           // |Φ| of rows that ought to follow from the others
+constexpr double opened = 1e-6;  // Φ of rows that ought to follow from the others, in units
 
 class Partitioned final : public OdeForm {
  public:
   Partitioned(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : OdeForm("partitioned", mechanism, options),
+      : OdeForm("partitioned", mechanism, options, start),
         jacobian_(mechanism),
         start_q_(start.q),
         before_q_(start.q),
@@ -59,6 +60,8 @@ class Partitioned final : public OdeForm {
     rate_values_.resize(jacobian_.rate_pattern().size());
     values_.resize(jacobian_.pattern().size());
     phi_.resize(jacobian_.rows());
+    unit_.setOnes(phi_.size());
+    unit_.head(mechanism.m()) = LoopUnits(mechanism).equations;
     e_->place(start.t, q_.data());
     Eigen::VectorXd weights(mechanism.nv());
     e_->mass_diagonal(weights.data());
@@ -77,7 +80,13 @@ class Partitioned final : public OdeForm {
   long partitions() const override { return partitions_; }
   /// Where drives move all there is, one number that stays zero.
   int size() const override { return std::max(1, 2 * freedom()); }
-  double scale(int) const override { return 1; }
+  /// By the partition at hand.
+  double scale(int i) const override {
+    const int n = freedom();
+    if (n == 0) return 1;
+    return i < n ? sizes_.q[static_cast<std::size_t>(independent_q(i))]
+                 : sizes_.u[static_cast<std::size_t>(independent_u(i - n))];
+  }
 
   std::vector<double> initial(const Start& start) override {
     before_q_ = start_q_ = q_ = start.q;
@@ -109,7 +118,7 @@ class Partitioned final : public OdeForm {
   bool after_step(double t, double* y, bool& changed) override {
     if (!close(t, y)) return false;
     // Rows that were not chosen follow from the others, unless the loops tie more than they did.
-    if (phi_.size() > 0 && !(phi_.cwiseAbs().maxCoeff() < opened))
+    if (phi_.size() > 0 && !(phi_.cwiseQuotient(unit_).cwiseAbs().maxCoeff() < opened))
       return fail_at(t, "the loops tie more coordinates than at the start");
     before_q_ = start_q_;
     before_t_ = start_t_;
@@ -239,8 +248,10 @@ class Partitioned final : public OdeForm {
       (k == 0 ? first : *inside_).solve(phi_, correction_q_);
       double length = 0;
       for (int i = 0; i < positions().rank(); ++i) {
-        q_[positions().dependent()[static_cast<std::size_t>(i)]] -= correction_q_[i];
-        if (!(std::abs(correction_q_[i]) <= length)) length = std::abs(correction_q_[i]);
+        const int at = positions().dependent()[static_cast<std::size_t>(i)];
+        q_[at] -= correction_q_[i];
+        const double way = std::abs(correction_q_[i]) / sizes_.q[static_cast<std::size_t>(at)];
+        if (!(way <= length)) length = way;
       }
       if (k > 0 && length <= last_correction) break;
       const bool shrinks = k == 0 || (k == 1 ? length < off_tangent : length < 0.5 * before);
@@ -294,6 +305,7 @@ class Partitioned final : public OdeForm {
   double start_t_ = 0, before_t_ = 0;   ///< their times [s]
   Eigen::VectorXd q_, u_, qdot_, udot_;
   Eigen::VectorXd phi_, rate_, correction_q_, correction_u_;
+  Eigen::VectorXd unit_;  ///< of phi_
   std::vector<double> rate_values_, values_;
 };
 

@@ -11,8 +11,8 @@
 // Drifts        nothing: Φ and Φ̇ at rounding after each step. The order of the method is kept: a
 //               correction is as large as the local error.
 // Iteration     Newton's error after a correction δ is of the order δ²: a correction below 1e-8
-//               rad or m is the last; a larger one is repeated as long as each is less than half
-//               the one before. At a singular pose this fails, and the state is not changed.
+//               rad or lengths is the last; a larger one is repeated as long as each is less than
+//               half the one before. At a singular pose this fails, and the state is not changed.
 // Source        Eich, SIAM J. Numer. Anal. 30 (1993), projection until consistent; Blajer,
 //               Multibody System Dynamics 7 (2002), and Terze, Lefeber, Muftić, Multibody System
 //               Dynamics 6 (2001), the mass metric.
@@ -37,7 +37,8 @@ class Projected final : public AccelerationForm {
     for (int k = 0; k < most_corrections; ++k) {
       if (!solve_correction(t, q)) return false;
       double length = 0;
-      for (const double x : delta_) length = std::max(length, std::abs(x));
+      for (std::size_t i = 0; i < delta_.size(); ++i)
+        length = std::max(length, std::abs(delta_[i]) / sizes_.way[i]);
       if (k > 0 && !(length < 0.5 * before)) break;
       take_correction(q);
       if (length <= last_correction) break;

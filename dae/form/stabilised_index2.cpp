@@ -17,7 +17,7 @@ class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
  public:
   StabilisedIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("stabilised-index2", mechanism,
-                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, true}, options, start,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, true, 1}, options, start,
                   Unknowns::velocities) {}
 
   template <class S>

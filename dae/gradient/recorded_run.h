@@ -90,6 +90,7 @@ class RecordedRun final : public OdeSystem {
     form_.look_on(looking);
   }
   double scale(int i) const override { return form_.scale(i); }
+  double time_scale() const override { return form_.time_scale(); }
 
  private:
   std::size_t width() const { return static_cast<std::size_t>(form_.size()); }

@@ -65,6 +65,7 @@ class TangentSystem final : public OdeSystem {
     form_.look_on(looking);
   }
   double scale(int i) const override;
+  double time_scale() const override { return form_.time_scale(); }
 
  private:
   int extra() const { return integrand_ ? 1 : 0; }

@@ -9,6 +9,10 @@
 namespace momenta {
 namespace {
 
+bool is_angle(const std::string& unit) {
+  return unit.empty() || unit == "1" || unit == "rad" || unit == "deg" || unit == "°";
+}
+
 /// Of the equation of a coupler: what its terms are by nature.
 double size_of(const LoopSpec& l, const Tree& tree, const Eigen::VectorXd& rates) {
   double size = 0;
@@ -36,12 +40,14 @@ double rounding_of(const Tree& tree, double length) {
   return rounding;
 }
 
-/// By row, of equations the largest |∂Φ/∂u_j| times the unit of u_j where joints stand as they are
-/// given; zero of other rows and where that is no number. Empty: no equations.
+/// By row, of formulas the largest |∂Φ/∂u_j| times the unit of u_j where joints stand as they are
+/// given; zero of other rows and where that is no number. Empty: no formulas.
 std::vector<double> sizes_of_equations(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
   std::set<std::string> names;
   for (const LoopSpec& l : mechanism.scene().loops)
     if (has_equation(l)) names.insert(l.name);
+  if (mechanism.scene().lagrangian)
+    for (const auto& c : mechanism.scene().lagrangian->constraints) names.insert(c.name);
   if (names.empty()) return {};
   std::vector<double> sizes(static_cast<std::size_t>(mechanism.m()), 0.0);
   const auto& pattern = mechanism.constraint_pattern();
@@ -60,14 +66,30 @@ std::vector<double> sizes_of_equations(const Mechanism& mechanism, const Eigen::
 
 }  // namespace
 
+Eigen::VectorXd rate_units(const Mechanism& mechanism) {
+  Eigen::VectorXd unit = Eigen::VectorXd::Ones(mechanism.nv());
+  if (const auto& formulas = mechanism.scene().lagrangian) {
+    std::map<std::string, double> largest;
+    for (const auto& c : formulas->coordinates)
+      if (!is_angle(c.unit)) largest[c.unit] = std::max(largest[c.unit], std::abs(c.position));
+    for (Eigen::Index i = 0; i < unit.size(); ++i)
+      if (const double size = largest[formulas->coordinates[static_cast<std::size_t>(i)].unit];
+          size > 0)
+        unit[i] = size;
+    return unit;
+  }
+  const double length = length_of(mechanism.scene());
+  for (const auto& b : mechanism.tree().bodies)
+    for (int i = 0; i < b.nv; ++i)
+      if (b.is_length(i)) unit[b.u + i] = length;
+  return unit;
+}
+
 LoopUnits::LoopUnits(const Mechanism& mechanism) {
   const Tree& tree = mechanism.tree();
   const double length = length_of(mechanism.scene());
   rounding = rounding_of(tree, length);
-  rates.setOnes(mechanism.nv());
-  for (const auto& b : tree.bodies)
-    for (int i = 0; i < b.nv; ++i)
-      if (b.is_length(i)) rates[b.u + i] = length;
+  rates = rate_units(mechanism);
   equations.setOnes(mechanism.m());
   const std::vector<double> of_equations = sizes_of_equations(mechanism, rates);
   std::map<std::string, const LoopSpec*> couplers;

@@ -9,6 +9,10 @@
 
 namespace momenta {
 
+/// By rate u (nv): the length of the scene, or a radian; of a Lagrangian the largest position at
+/// the start of its coordinates in that unit, 1 where these are zero or the unit is that of angles.
+Eigen::VectorXd rate_units(const Mechanism& mechanism);
+
 struct LoopUnits {
   explicit LoopUnits(const Mechanism& mechanism);
 

@@ -30,7 +30,11 @@ namespace {
 class Bdf5 {
  public:
   Bdf5(DaeSystem& system, const IntegrationOptions& options, double span)
-      : system_(system), options_(options), span_(span), share_(span, options.rtol) {
+      : system_(system),
+        options_(options),
+        span_(span),
+        scale_(std::min(span, system.horizon())),
+        share_(span, options.rtol) {
     y_.resize(static_cast<std::size_t>(system.size()));
     ydot_.resize(y_.size());
     if (options.max_order > 0) highest_ = std::min(highest_, options.max_order);
@@ -55,7 +59,7 @@ class Bdf5 {
 
   /// At order 1, from y and y' as they stand.
   bool restart(double t) {
-    h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * span_;
+    h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * scale_;
     h_ = std::min(h_, longest());
     order_ = degree_ = 1;
     steps_since_change_ = 0;
@@ -69,7 +73,7 @@ class Bdf5 {
     failures_ = 0;
     while (true) {
       const double t1 = t + 1.0001 * h_ >= end ? end : t + h_;
-      if (t1 < end && h_ < 4 * epsilon * std::max(std::abs(t), 1e-9 * span_)) {
+      if (t1 < end && h_ < 4 * epsilon * std::max(std::abs(t), 1e-9 * scale_)) {
         cause =
             "the step became as short as the rounding of t" + (cause_.empty() ? "" : ": " + cause_);
         return false;
@@ -212,7 +216,7 @@ class Bdf5 {
   const IntegrationOptions& options_;
   std::unique_ptr<BdfStep> step_;
   std::vector<double> y_, ydot_;
-  double span_, h_ = 0;
+  double span_, scale_, h_ = 0;  ///< [s]; steps at a start are parts of the scale
   LocalShare share_;
   int highest_ = BdfStep::highest_order, order_ = 1;
   int degree_ = 1;  ///< of dense output

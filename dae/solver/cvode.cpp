@@ -30,6 +30,8 @@ namespace momenta {
 namespace {
 
 // CVODE's defaults are 7 and 10. A run that passes a sharp peak cuts a step further.
+/// The first step over the horizon, where the end is beyond that: its own guess is tied to the end.
+constexpr double far_first_step = 1e-10;
 constexpr int max_error_test_failures = 15;
 constexpr int max_convergence_failures = 15;
 constexpr int highest_order_adams = 12, highest_order_bdf = 5;
@@ -79,6 +81,8 @@ class Cvode {
     if (options.max_step > 0) check(CVodeSetMaxStep(cvode, options.max_step), "CVodeSetMaxStep");
     if (options.initial_step > 0)
       check(CVodeSetInitStep(cvode, std::min(options.initial_step, end - t0)), "CVodeSetInitStep");
+    else if (end - t0 > system.horizon())
+      check(CVodeSetInitStep(cvode, far_first_step * system.horizon()), "CVodeSetInitStep");
     if (end > t0) check(CVodeSetStopTime(cvode, end), "CVodeSetStopTime");
   }
 

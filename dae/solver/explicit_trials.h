@@ -53,9 +53,9 @@ class Trials {
       const double longest = longest_step();
       h_ = options_.initial_step > 0
                ? std::min(options_.initial_step, longest)
-               : first_step(Tableau::order, t, step_.y(), step_.first_derivative(),
-                            step_.absolute_tolerance(), options_.rtol, n_, longest,
-                            step_.workspace(), step_.y_new(),
+               : first_step(Tableau::order, system_.time_scale(), t, step_.y(),
+                            step_.first_derivative(), step_.absolute_tolerance(), options_.rtol, n_,
+                            longest, step_.workspace(), step_.y_new(),
                             [this](double at, const double* y, double* ydot) {
                               return step_.evaluate(at, y, ydot);
                             });
@@ -196,8 +196,8 @@ class Trials {
   long again_evaluations_ = 0;                  ///< of those
   StepControl<Tableau> control_;
   std::size_t n_;
-  double t0_, end_;  ///< of the run [s]
-  double h_ = 0;     ///< step tried next [s]
+  double t0_, end_;                                         ///< of the run [s]
+  double h_ = 0;                                            ///< step tried next [s]
   double first_ = std::numeric_limits<double>::infinity();  ///< the first that was tried [s]
   bool fixed_;
   SingularityHandling handling_ = SingularityHandling::none;

@@ -29,8 +29,7 @@ class GaugeSymmetry {
   /// The shift c = −σ of y and, by Φ̇_qᵀc, of y', which are consistent: y' is then that of (8).
   virtual void reset(double t, double* y, double* ydot) = 0;
 
-  /// The norm of motion_squares() from now on: at (t, y, y'), weights 1/(atol + rtol size);
-  /// of a mechanism slower than 1/s, its rates weigh atol times its own rate.
+  /// The norm of motion_squares() from now on: at (t, y, y'), weights 1/(atol scale + rtol size).
   virtual void measure_at(double t, const double* y, const double* ydot, double rtol,
                           double atol) = 0;
   /// Mean square of e_q, by the same weights. O(n).

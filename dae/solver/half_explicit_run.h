@@ -61,6 +61,7 @@ class HalfExplicitRun {
         now_(size_),
         look_(size_),
         span_(span),
+        scale_(std::min(span, system.horizon())),
         t0_(t0),
         t1_(t0) {}
 
@@ -85,7 +86,7 @@ class HalfExplicitRun {
     const double longest = options_.max_step > 0 ? options_.max_step : span_;
     h_ = options_.step > 0           ? options_.step
          : options_.initial_step > 0 ? options_.initial_step
-                                     : Stages::first_step * span_;
+                                     : Stages::first_step * scale_;
     h_ = options_.step > 0 ? h_ : std::min(h_, longest);
     return finite(now_);
   }
@@ -125,7 +126,7 @@ class HalfExplicitRun {
       ++counters_.rejected;
       if (good) cause_ = "the local error stayed above its tolerance";
       if (!fixed) h_ = h * (good ? control_.rejected(squares) : control_.failed());
-      if (fixed || h_ < 16 * epsilon * std::max(std::abs(t), 1e-6 * span_)) {
+      if (fixed || h_ < 16 * epsilon * std::max(std::abs(t), 1e-6 * scale_)) {
         swap();
         cause =
             cause_ + (fixed ? ", with a step of " : ", also with a step of ") + in_words(h_) + " s";
@@ -238,8 +239,8 @@ class HalfExplicitRun {
   explicit_rk::StepControl<typename Stages::Control> control_;
   std::size_t n_, size_;  ///< of y; of (y, z)
   HalfExplicitState old_, now_, look_;
-  double span_, h_ = 0;
-  double t0_, t1_;  ///< the last step [s]
+  double span_, scale_, h_ = 0;  ///< [s]; steps at a start are parts of the scale
+  double t0_, t1_;               ///< the last step [s]
   std::string cause_;
   Counters counters_;
 };

@@ -129,7 +129,9 @@ class Ida {
     if (options_.max_step > 0) check(IDASetMaxStep(ida, options_.max_step), "IDASetMaxStep");
     t_end_ = t0_ + span_;
     check(IDASetStopTime(ida, t_end_), "IDASetStopTime");
-    first_step_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * span_;
+    first_step_ = options_.initial_step > 0
+                      ? options_.initial_step
+                      : first_step_fraction * std::min(span_, system_.horizon());
     if (options_.max_step > 0) first_step_ = std::min(first_step_, options_.max_step);
     check(IDASetInitStep(ida, std::min(first_step_, span_)), "IDASetInitStep");
   }

@@ -49,6 +49,7 @@ class Radau5 {
         gauge_(gauge_of(system)),
         options_(options),
         span_(span),
+        scale_(std::min(span, system.horizon())),
         error_(system, gauge_, options, span),
         n_(static_cast<std::size_t>(system.size())),
         index_(index_of(system)),
@@ -79,7 +80,7 @@ class Radau5 {
       h_ = options_.step;
       return;
     }
-    h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * span_;
+    h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * scale_;
     h_ = std::min(h_, longest());
   }
 
@@ -108,7 +109,7 @@ class Radau5 {
       if (options_.step > 0 && rejected_ && have_derivatives_)
         return cause = failure_ + ", with a step of " + in_words(options_.step) + " s", false;
       // The floor of the step is met by rounding alone, not where the run ends.
-      if (h_ <= 16 * epsilon * std::max(std::abs(t), 1e-6 * span_) && t1 < end)
+      if (h_ <= 16 * epsilon * std::max(std::abs(t), 1e-6 * scale_) && t1 < end)
         return cause = failure_ + ", also with a step of " + in_words(h_) + " s", false;
       if (!have_derivatives_ && !differentiate(t)) return cause = failure_, false;
       if (attempt(t, t1)) {
@@ -289,7 +290,7 @@ class Radau5 {
     const double from = early ? earlier_t_ : t0_, h = t - from;
     const std::vector<double>&start = early ? earlier_y_ : y0_,
           &rate = early ? earlier_ydot_ : ydot0_;
-    if (h <= 4 * epsilon * std::max(std::abs(from), 1e-6 * span_)) {
+    if (h <= 4 * epsilon * std::max(std::abs(from), 1e-6 * scale_)) {
       std::copy(start.begin(), start.end(), y);
       std::copy(rate.begin(), rate.end(), ydot);
       return true;
@@ -313,7 +314,7 @@ class Radau5 {
   GaugeSymmetry* gauge_;  ///< null: there is none
   std::optional<StagesInGauge> stages_in_gauge_;
   const IntegrationOptions& options_;
-  double span_;
+  double span_, scale_;  ///< [s]; steps at a start are parts of the scale
   LocalError error_;
   Prediction control_;
   std::size_t n_;

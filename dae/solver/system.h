@@ -76,6 +76,13 @@ class OdeSystem {
   /// last rhs().
   virtual LocalJacobian* local() { return nullptr; }
 
+  /// The time in which an unknown of its typical size typically changes by it [s].
+  virtual double time_scale() const { return 1.0; }
+
+  /// The longest span of a run [s] of which first steps, and the least steps near t = 0, are parts:
+  /// a farther end is no scale of the motion.
+  virtual double horizon() const { return 1e12; }
+
   /// One sentence on the last call that returned false.
   const std::string& failure() const { return failure_; }
 
@@ -161,6 +168,10 @@ class DaeSystem {
   };
   /// The weight of y_i.
   virtual Weight weight(int i) const { return {differential(i) ? 0 : -1, scale(i)}; }
+
+  /// The longest span of a run [s] of which first steps, and the least steps near t = 0, are parts:
+  /// a farther end is no scale of the motion.
+  virtual double horizon() const { return 1e12; }
 
   /// Whether y, or a state of ode_restart(), is near a pose where loop equations lose rank; either
   /// begins with the coordinates. There the Newton matrix of a method may be singular if its step

@@ -14,6 +14,7 @@
 // and where that is above √1e-2, and above the least of the run, nothing is looked for.
 
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
@@ -38,6 +39,8 @@ class SingularCrossings {
         q_(mechanism.nq()),
         at_rest_(Eigen::VectorXd::Zero(mechanism.nv())),
         unused_(mechanism.nv()),
+        way_(Eigen::VectorXd::Zero(mechanism.nv())),
+        rates_(rate_units(mechanism)),
         length_(length_of(mechanism.scene())) {}
 
   /// Of the step just taken; `state`: work space of the form's size.
@@ -57,6 +60,7 @@ class SingularCrossings {
   void carry(Memory& memory) {
     memory(always_faded_), memory(largest_), memory(passing_);
     memory(before_), memory(fastest_);
+    memory(has_way_), memory(way_.data(), static_cast<std::size_t>(way_.size()));
   }
 
   /// After the last step.
@@ -139,7 +143,10 @@ class SingularCrossings {
       passing_ = false;
       return;
     }
-    if (!passing_) result_.singular_crossings.push_back({t, pivot});
+    if (!passing_) {
+      result_.singular_crossings.push_back({t, pivot});
+      has_way_ = false;
+    }
     passing_ = true;
     RunResult::SingularCrossing& last = result_.singular_crossings.back();
     last.ambiguous = last.ambiguous || is_ambiguous(t, pivot, between, state);
@@ -150,21 +157,41 @@ class SingularCrossings {
 
   /// Two motions that meet where a pivot vanishes with the square of the distance, Φ = x y = 0,
   /// keep clear of each other off the constraints, Φ = x y = η: no nearer than √η, where the pivot
-  /// is about η, and there either leads into the other.
+  /// is about η, and there either leads into the other. Steps seldom end just there; where rates
+  /// within some twenty √η turn onto another line, one did lead into the other.
   bool is_ambiguous(double t, double pivot, const Interpolant& between,
                     std::vector<double>& state) {
-    constexpr double apart = 10;
-    const auto meets = [&](const Eigen::VectorXd& q) {
+    constexpr double meeting = 10, near = 1000;
+    const auto over_gap = [&](const Eigen::VectorXd& q) {
       e_.place(t, q.data());
       e_.positions(phi_.data());
       const double gap = phi_.norm() / length_;
-      return gap > rounding_level && pivot < apart * gap;
+      return gap > rounding_level ? pivot / gap : std::numeric_limits<double>::infinity();
     };
     between(t, state.data());
     // Corrections bring q nearer to the constraints: where it is near enough before, they are
     // spared.
-    if (!form_.read_coordinates(t, state.data(), q_) || !meets(q_)) return false;
-    return form_.read(t, state.data(), nullptr, here_) && meets(here_.q);
+    if (!form_.read_coordinates(t, state.data(), q_)) return false;
+    if (!has_way_ && !(over_gap(q_) < near)) return false;
+    if (!form_.read(t, state.data(), nullptr, here_)) return false;
+    const double ratio = over_gap(here_.q);
+    if (ratio < meeting) return true;
+    const bool turned = has_way_ && turns(here_.u);
+    if (!has_way_) way_ = here_.u;
+    has_way_ = ratio < near;
+    return turned;
+  }
+
+  /// By more than half a radian from the line of way_, angles and lengths of the scene alike.
+  bool turns(const Eigen::VectorXd& u) const {
+    double along = 0, first = 0, now = 0;
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      const double weight = 1 / (rates_[i] * rates_[i]);
+      along += weight * u[i] * way_[i];
+      first += weight * way_[i] * way_[i];
+      now += weight * u[i] * u[i];
+    }
+    return std::abs(along) < std::cos(0.5) * std::sqrt(first * now);
   }
 
   Form& form_;
@@ -173,7 +200,10 @@ class SingularCrossings {
   RunResult& result_;
   Eigen::VectorXd phi_, q_, at_rest_, unused_;
   Snapshot here_;
-  double length_;  ///< of the scene [m]
+  Eigen::VectorXd way_;    ///< u where this crossing came near another motion
+  Eigen::VectorXd rates_;  ///< a radian, or the length of the scene
+  double length_;          ///< of the scene [m]
+  bool has_way_ = false;
   int always_faded_ = std::numeric_limits<int>::max();
   double largest_ = 0;            ///< pivot on the run
   double before_ = not_measured;  ///< pivot at the end of the step before

@@ -72,10 +72,12 @@ struct AtAState {
     srand(5);
     const VectorXd away = VectorXd::Random(static_cast<Index>(y.size()));
     for (std::size_t i = leaves ? 0 : static_cast<std::size_t>(mechanism.nq()); i < y.size(); ++i)
-      y[i] += 1e-2 * (std::abs(y[i]) + 0.1 * ode().scale(static_cast<int>(i))) *
-              away[static_cast<Index>(i)];
+      y[i] +=
+          1e-2 * (std::abs(y[i]) + 0.1 * size(static_cast<int>(i))) * away[static_cast<Index>(i)];
   }
   OdeForm& ode() { return dynamic_cast<OdeForm&>(*form); }
+  /// Of rates and momenta at 1/s, however fast the mechanism is.
+  double size(int i) { return ode().scale(i) * (i < mechanism.nq() ? 1 : ode().time_scale()); }
   AdjointState state() {
     const Index n = mechanism.nv();
     return {0, Map<const VectorXd>(y.data(), n), Map<const VectorXd>(y.data() + n, n),

@@ -1,18 +1,23 @@
 // Scenes in other units and in turned rooms move alike: q(t) of the one is q(τt) of the other,
-// lengths times s. So do scenes of another size, and scenes that start at rest at another speed.
+// lengths times s, in the same steps. So do scenes of another size, and scenes that start at rest
+// at another speed.
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
 #include "equations/scissor.h"
+#include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
 #include <filesystem>
+#include <random>
 
 namespace momenta::dae_extremes {
 namespace {
@@ -341,6 +346,236 @@ TEST(Extremes, LoopsThatAreWeakThroughoutCrossNothing) {
   ASSERT_EQ(lift.status, "done") << lift.reason;
   EXPECT_LT(lift.least_pivot, 1e-2);
   EXPECT_TRUE(lift.singular_crossings.empty());
+}
+
+/// What the program chooses by itself, leaks, gains, tolerances, first steps, verdicts, is the same
+/// choice in other units, and runs take the same steps to the same end: within what rounding
+/// decides, of explicit methods next to nothing, of Newton's a correction here and there.
+struct Case {
+  const char* name;
+  Scene scene;
+  double end;  ///< [s]
+};
+
+/// Hinges, slides, balls and a flying body; with loops, redundant ones and without; driven,
+/// falling, at rest and thrown.
+std::vector<Case> cases() {
+  std::vector<Case> all{{"four_bar", example("four_bar/scene.toml"), 0.6},
+                        {"bricard", equations::bricard(), 0.4},
+                        {"slider_crank", example("slider_crank/scene.toml"), 0.4},
+                        {"spatial_slider_crank", example("spatial_slider_crank/scene.toml"), 0.1},
+                        {"andrews", example("andrews/scene.toml"), 0.003},
+                        {"platform", equations::platform(6), 0.1},
+                        {"flying rod", equations::flying_rod(), 0.3},
+                        {"pendulum", example("pendulum/scene.toml"), 0.5}};
+  for (Case& c : all) {
+    c.scene.run.end_time = c.end;
+    c.scene.run.leak.reset();
+  }
+  return all;
+}
+
+const Units others[] = {{1e-6, 1, 1}, {1e6, 1, 1},     {1, 1e-6, 1},     {1, 1e6, 1},
+                        {1, 1, 1e-6}, {1, 1, 1e6},     {1e3, 1e-3, 1e3}, {1e-6, 1e6, 1e6},
+                        {10, 1, 1},   {1e6, 1e6, 1e-6}};
+
+std::string in_words(const Units& u) {
+  char text[80];
+  std::snprintf(text, sizeof text, "length %g, time %g, mass %g", u.length, u.time, u.mass);
+  return text;
+}
+
+RunResult run_in(const Scene& scene, const std::string& form, const std::string& method,
+                 const std::string& gauge = "") {
+  const Mechanism mechanism(scene);
+  RunRequest request;
+  request.settings = default_settings(scene.run, form, method, 1e-7);
+  if (!gauge.empty()) request.settings.gauge = gauge;
+  request.settings.samples = 4;
+  return run_form(mechanism, equations::start_of(mechanism), request);
+}
+
+void expect_same_choices(const RunResult& plain, const RunResult& other, const Units& units,
+                         const std::string& where) {
+  EXPECT_EQ(other.status, plain.status) << where << ": " << other.reason << plain.reason;
+  const bool implicit = is_dae_form(plain.settings.form);
+  const auto steps = static_cast<double>(plain.counters.steps + plain.counters.rejected);
+  EXPECT_NEAR(static_cast<double>(other.counters.steps + other.counters.rejected), steps,
+              implicit ? 4 + 0.15 * steps : 1 + 0.02 * steps)
+      << where;
+  EXPECT_NEAR(other.settings.baumgarte_beta * units.time, plain.settings.baumgarte_beta,
+              1e-9 * plain.settings.baumgarte_beta)
+      << where;
+  if (plain.settings.gauge.rfind("leak:", 0) == 0) {
+    const double kappa = parse_gauge(plain.settings.gauge).kappa;
+    EXPECT_NEAR(parse_gauge(other.settings.gauge).kappa * units.time, kappa, 0.05 * kappa) << where;
+  }
+  EXPECT_EQ(other.rank, plain.rank) << where;
+}
+
+class InOtherUnits : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(InOtherUnits, TheSameSteps) {
+  const auto [form, method] = GetParam();
+  std::size_t turn = 0;
+  for (const Case& c : cases()) {
+    const RunResult plain = run_in(c.scene, form, method);
+    for (int k = 0; k < 2; ++k) {
+      const Units& units = others[turn++ % std::size(others)];
+      expect_same_choices(plain, run_in(in_units(c.scene, units), form, method), units,
+                          std::string(c.name) + ", " + in_words(units));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Forms, InOtherUnits,
+    testing::Values(std::pair{"momentum", "dop853"}, std::pair{"acceleration", "dp5"},
+                    std::pair{"baumgarte", "vern9"}, std::pair{"partitioned", "dop853"},
+                    std::pair{"projected", "dp5"}, std::pair{"momentum-index2", "ida"},
+                    std::pair{"stabilised-index2", "ida"}, std::pair{"momentum-index2", "bdf5"},
+                    std::pair{"acceleration-index2", "radau5"}),
+    [](const auto& form) {
+      std::string name = std::string(form.param.first) + "_" + form.param.second;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
+
+TEST(Extremes, RandomScenesTakeTheSameStepsInOtherUnits) {
+  std::mt19937 random(7);
+  int compared = 0;
+  for (int k = 0; k < 24; ++k) {
+    std::vector<unsigned char> bytes(160);
+    for (unsigned char& b : bytes) b = static_cast<unsigned char>(random());
+    Scene scene = equations::sound_scene(bytes, k % 2 == 0);
+    const Units& units = others[static_cast<std::size_t>(k) % std::size(others)];
+    const char* form = k % 3 == 0 ? "acceleration" : k % 3 == 1 ? "momentum" : "stabilised-index2";
+    RunResult plain;
+    try {
+      plain = run_in(scene, form, "");
+    } catch (const SceneError&) {  // it cannot be assembled
+      continue;
+    }
+    if (plain.status != "done") continue;
+    ++compared;
+    expect_same_choices(plain, run_in(in_units(scene, units), form, ""), units,
+                        "scene " + std::to_string(k) + ", " + in_words(units));
+  }
+  EXPECT_GT(compared, 10);
+}
+
+/// Points tied by a rod, by formulas: a satellite of two masses on a tether, and a pendulum.
+Scene tether(double metre) {
+  return parse_scene("[parameters]\nm = " + std::to_string(metre) + R"toml(
+mu = "3.986e14*m^3"
+R = "7e6*m"
+L = "1000*m"
+[lagrangian]
+coordinates = ["x1", "y1", "x2", "y2"]
+units = ["m", "m", "m", "m"]
+position = ["R", 0, "R+L*cos(0.3)", "L*sin(0.3)"]
+velocity = [0, "sqrt(mu/R)", 0, "sqrt(mu/R)"]
+kinetic = "250*(x1.dot^2+y1.dot^2)+150*(x2.dot^2+y2.dot^2)"
+potential = "-mu*500/hypot(x1,y1)-mu*300/hypot(x2,y2)"
+constraints = [{name = "tether", equation = "hypot(x2-x1,y2-y1)-L"}]
+[run]
+end = 6000
+)toml");
+}
+
+Scene pendulum(double metre) {
+  return parse_scene("[parameters]\nm = " + std::to_string(metre) + R"toml(
+[lagrangian]
+coordinates = ["x", "y"]
+units = ["m", "m"]
+position = ["0.9*m*sin(1)", "-0.9*m*cos(1)"]
+kinetic = "0.5*(x.dot^2+y.dot^2)"
+potential = "9.81*m*y"
+constraints = [{name = "r", equation = "hypot(x,y)-0.9*m"}]
+[run]
+end = 2
+)toml");
+}
+
+/// The same of bodies, which start far off for their lengths: rounding of v × p turns them by more
+/// than the tolerance in steps of the orbit, so that steps are those it allows.
+Scene tether_of_bodies(double metre) {
+  return parse_scene("[parameters]\nm = " + std::to_string(metre) + R"toml(
+mu = "3.986e14*m^3"
+R = "7e6*m"
+L = "1000*m"
+[[body]]
+name = "a"
+mass = 500
+inertia = "50*m^2"
+[[body]]
+name = "b"
+mass = 300
+inertia = "30*m^2"
+[[joint]]
+name = "A"
+kind = "planar"
+child = "a"
+position = ["R", 0, 0]
+velocity = [0, "sqrt(mu/R)", 0]
+[[joint]]
+name = "B"
+kind = "planar"
+child = "b"
+position = ["R+L*cos(0.3)", "L*sin(0.3)", 0]
+velocity = [0, "sqrt(mu/R)", 0]
+[[marker]]
+name = "a"
+body = "a"
+[[marker]]
+name = "b"
+body = "b"
+[[force]]
+kind = "potential"
+V = "-mu*500/hypot(a.x,a.y)-mu*300/hypot(b.x,b.y)"
+[[loop]]
+name = "tether"
+kind = "distance"
+parent = "a"
+child = "b"
+length = "L"
+[run]
+end = 300
+)toml");
+}
+
+TEST(Extremes, ASatelliteOfBodiesRuns) {
+  for (const double metre : {1.0, 1e-3, 1e3})
+    for (const auto& [form, gauge] :
+         {std::pair{"momentum", "reset"}, std::pair{"momentum", "leak"},
+          std::pair{"momentum-index2", "leak"}, std::pair{"stabilised-index2", ""}}) {
+      const RunResult run = run_in(tether_of_bodies(metre), form, "", gauge);
+      EXPECT_EQ(run.status, "done") << form << " " << metre << ": " << run.reason;
+      EXPECT_LT(run.counters.steps, 5000) << form << " " << metre;
+    }
+}
+
+/// The leak comes from what the loop does, no faster than the orbit, 1.1e-3/s, and not from the
+/// speed.
+TEST(Extremes, ASatelliteLeaksNoFasterThanItTurns) {
+  for (const double metre : {1.0, 1e-3, 1e3}) {
+    const Mechanism mechanism(tether(metre));
+    const double kappa = default_leak(mechanism, equations::start_of(mechanism));
+    EXPECT_LT(kappa, 1.1e-3) << metre;
+    const RunResult run = run_in(mechanism.scene(), "momentum", "");
+    EXPECT_EQ(run.status, "done") << run.reason;
+    EXPECT_LT(run.counters.steps, 200) << metre;
+  }
+}
+
+TEST(Extremes, APendulumTakesTheSameStepsInMillimetres) {
+  for (const char* form : {"momentum", "acceleration", "stabilised-index2", "momentum-index2"}) {
+    const RunResult plain = run_in(pendulum(1), form, "");
+    EXPECT_EQ(plain.status, "done") << form << plain.reason;
+    for (const double metre : {1e-3, 1e3, 1e6})
+      expect_same_choices(plain, run_in(pendulum(metre), form, ""), {metre, 1, 1},
+                          std::string(form) + " " + std::to_string(metre));
+  }
 }
 
 }  // namespace

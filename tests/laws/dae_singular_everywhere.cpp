@@ -54,7 +54,7 @@ Case bifurcation() {
 }
 
 RunResult run(const Mechanism& mechanism, const Start& start, const std::string& form,
-              const std::string& integrator, double tolerance) {
+              const std::string& integrator, double tolerance, double end = end_of_runs) {
   RunRequest request;
   RunSettings& s = request.settings;
   s.form = form;
@@ -63,14 +63,14 @@ RunResult run(const Mechanism& mechanism, const Start& start, const std::string&
   s.gauge = is_dae ? "leak:3" : "reset";
   s.project = !is_dae && form == "momentum";
   s.rtol = s.atol = tolerance;
-  s.end_time = end_of_runs;
+  s.end_time = end;
   s.samples = 50;
   request.keep_trajectory = true;
   return run_form(mechanism, start, request);
 }
 RunResult run(const Mechanism& mechanism, const std::string& form, const std::string& integrator,
-              double tolerance) {
-  return run(mechanism, equations::start_of(mechanism), form, integrator, tolerance);
+              double tolerance, double end = end_of_runs) {
+  return run(mechanism, equations::start_of(mechanism), form, integrator, tolerance, end);
 }
 double error_of(const RunResult& run, double exact) {
   EXPECT_EQ(run.status, "done") << run.reason;
@@ -282,6 +282,46 @@ TEST(SingularEverywhere, WhoLosesTheBranchSaysSo) {
       }
     }
   EXPECT_GT(lost, 0);
+}
+
+// A bead falls through the node of a lemniscate, or of a curve whose branches cross at other
+// angles. Off the curve by what accelerations drift, each branch leads into the other.
+TEST(SingularEverywhere, WhoTurnsAtANodeSaysSo) {
+  int lost = 0, all = 0;
+  for (const double slope : {0.5, 1.0, 2.0})
+    for (const double start : {0.85, 0.88, 0.9, 0.93}) {
+      const double square = start * start, k = slope * slope;
+      // (x² + y²)² = x² − y²/k, at the start below x² of the curve's end: y² of the upper half.
+      const double b = 2 * square + 1 / k;
+      const double y = std::sqrt((-b + std::sqrt(b * b - 4 * (square * square - square))) / 2);
+      const Mechanism mechanism(parse_scene(
+          "[lagrangian]\ncoordinates = [\"x\", \"y\"]\nunits = [\"m\", \"m\"]\nposition = [" +
+          std::to_string(start) + ", " + std::to_string(y) +
+          "]\nvelocity = [-1.0, 0.0]\nkinetic = \"0.5*(x.dot^2+y.dot^2)\"\n"
+          "potential = \"1.0*y\"\nconstraints = [{name = \"curve\", equation = "
+          "\"(x^2+y^2)^2-(x^2-y^2/" +
+          std::to_string(k) + ")\"}]\n"));
+      const auto end_of = [&](const char* form, double tolerance, bool& told) {
+        const RunResult r = run(mechanism, form, "dop853", tolerance, 2.2);
+        EXPECT_EQ(r.status, "done") << form << ": " << r.reason;
+        told = std::any_of(r.singular_crossings.begin(), r.singular_crossings.end(),
+                           [](const auto& p) { return p.ambiguous; });
+        return r.trajectory.rows.back()[1];
+      };
+      bool of_smooth = false;
+      const double smooth = end_of("momentum", 1e-10, of_smooth);
+      EXPECT_FALSE(of_smooth);
+      for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8}) {
+        bool told = false;
+        const double end = end_of("acceleration", tolerance, told);
+        ++all;
+        if (!(std::abs(end - smooth) > 0.02)) continue;
+        ++lost;
+        EXPECT_TRUE(told) << "slope " << slope << " from " << start << " at " << tolerance
+                          << ": ends at x = " << end << ", the smooth motion at " << smooth;
+      }
+    }
+  EXPECT_GT(lost, all / 20);
 }
 
 }  // namespace

@@ -204,8 +204,16 @@ TEST(Departures, NoStepIsTiedToAFarEnd) {
   const Mechanism mechanism(
       read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml"));
   const Start start = assemble(mechanism).start;
-  for (const auto& [form, integrator] :
-       {std::pair{"momentum", "dop853"}, {"acceleration", "vern9"}, {"projected", "dp5"}}) {
+  for (const auto& [form, integrator] : {std::pair{"momentum", "dop853"},
+                                         {"acceleration", "vern9"},
+                                         {"projected", "dp5"},
+                                         {"momentum", "bdf"},
+                                         {"acceleration", "adams"},
+                                         {"momentum-index2", "ida"},
+                                         {"momentum-index2", "bdf5"},
+                                         {"stabilised-index2", "radau5"},
+                                         {"momentum-index2", "hem5"},
+                                         {"momentum-index2", "hem8"}}) {
     RunRequest request;
     request.settings.form = form;
     request.settings.integrator = integrator;
