@@ -2,6 +2,8 @@
 
 #include "equations/decompositions.h"
 
+#include <algorithm>
+
 namespace momenta::equations {
 
 LoopedMotion::LoopedMotion(const Scene& scene, const Tree& tree)
@@ -45,7 +47,8 @@ RealVector LoopedMotion::accelerations(Real t, const Eigen::VectorXd& q,
   const Eigen::LLT<RealMatrix> mass(motion_.mass_matrix(t, q));
   const RealMatrix scaled = mass.matrixL().solve(J.transpose()).transpose();
   Eigen::CompleteOrthogonalDecomposition<RealMatrix> rows;
-  rows.setThreshold(1e-11L);
+  // Redundant rows are independent where loops are open, by as much.
+  rows.setThreshold(std::max(1e-11L, 100 * Real(open(static_cast<double>(t), q))));
   rows.compute(scaled);
   const RealVector change = rows.solve(off);
   return free - mass.matrixU().solve(change);

@@ -2,7 +2,8 @@
 // The slow twin of a run: Φ, Φ̇, T + V and the power of all that acts, of a scene with loops at the
 // states of a trajectory, from the positions of its bodies alone.
 //
-//   u̇       M u̇ = Q − bias − Φ_qᵀλ with Φ̈ = 0, in long double; of redundant rows any λ
+//   u̇       M u̇ = Q − bias − Φ_qᵀλ with Φ̈ = 0, in long double; of rows that are redundant,
+//           or are but for the gaps of open loops, any λ
 //   power   d/dt (T + V) along that u̇: dampers, drives, whatever there is
 //
 // A motion that obeys the equations changes T + V by the integral of that power; a wrong one does
