@@ -155,6 +155,22 @@ class Assembler {
         (scene.lagrangian ? "constraints that can be met" : "loops that close") + within);
   }
 
+  /// Of the drives of joints, in radians or lengths of the scene [1/s]: what they turn as one opens
+  /// no loop but by the rounding of that.
+  double fastest_drive() const {
+    const Tree& tree = mechanism_.tree();
+    double fastest = 0;
+    for (const Tree::Body& b : tree.bodies) {
+      if (b.drive < 0) continue;
+      double f = 0, rate = 0, bend = 0;
+      tree.drives[static_cast<std::size_t>(b.drive)].evaluate(t_, f, rate, bend);
+      const bool slides =
+          b.kind == JointKind::prismatic;  // it has no rates: is_length() is of those
+      fastest = std::max(fastest, std::abs(rate) / (slides ? length_of(mechanism_.scene()) : 1));
+    }
+    return fastest;
+  }
+
   void close_velocities(Assembly& a) {
     Eigen::VectorXd& u = a.start.u;
     Eigen::VectorXd rate(mechanism_.m());
@@ -171,7 +187,8 @@ class Assembler {
     }
     e().move(nullptr);
     e().velocities(rate.data());
-    const double prescribed = rate.cwiseQuotient(row_).cwiseAbs().maxCoeff();
+    const double prescribed =
+        std::max(rate.cwiseQuotient(row_).cwiseAbs().maxCoeff(), fastest_drive());
     e().move(u.data());
     e().velocities(rate.data());
     a.velocity_residual = rate.cwiseAbs().maxCoeff();

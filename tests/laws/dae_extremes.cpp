@@ -578,5 +578,69 @@ TEST(Extremes, APendulumTakesTheSameStepsInMillimetres) {
   }
 }
 
+/// A linkage on a table that a drive turns, at rest on it: the table's rate opens no loop, and what
+/// rounding leaves of it is held against that rate.
+TEST(Extremes, ADriveThatTurnsAllLoopsAsOneStarts) {
+  std::mt19937 random(11);
+  const auto number = [&](double low, double high) {
+    return std::to_string(std::uniform_real_distribution(low, high)(random));
+  };
+  for (int k = 0; k < 40; ++k) {
+    const Scene scene = parse_scene(R"toml(
+[[body]]
+name = "table"
+mass = 1
+inertia = 1
+[[body]]
+name = "a"
+mass = 1
+inertia = 1
+[[body]]
+name = "b"
+mass = 1
+inertia = 1
+[[joint]]
+name = "S"
+kind = "revolute"
+child = "table"
+axis = "z"
+[[joint]]
+name = "A"
+kind = "revolute"
+parent = "table"
+child = "a"
+axis = "z"
+origin = { parent = [0.1, 0.2, 0] }
+position = )toml" + number(-3, 3) + R"toml(
+[[joint]]
+name = "B"
+kind = "revolute"
+parent = "a"
+child = "b"
+axis = "z"
+origin = { parent = [1, 0, 0] }
+position = )toml" + number(-3, 3) + R"toml(
+[[loop]]
+name = "L"
+kind = "revolute"
+axis = "z"
+parent = "table"
+child = "b"
+origin = { parent = [)toml" + number(0.5, 1.5) +
+                                    ", " + number(-1, 1) + R"toml(, 0], child = [1.2, 0, 0] }
+[[drive]]
+joint = "S"
+kind = "polynomial"
+coefficients = [0.3, )toml" + number(-9, 9) +
+                                    "]\n");
+    for (const Units& units :
+         {Units{1, 1, 1}, others[static_cast<std::size_t>(k) % std::size(others)]}) {
+      const Mechanism mechanism(in_units(scene, units));
+      const Start start = equations::start_of(mechanism);
+      EXPECT_LT(start.u.cwiseAbs().maxCoeff() * units.time, 1e-12) << k << in_words(units);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace momenta::dae_extremes
