@@ -155,18 +155,18 @@ class Assembler {
         (scene.lagrangian ? "constraints that can be met" : "loops that close") + within);
   }
 
-  /// Of the drives of joints, in radians or lengths of the scene [1/s]: what they turn as one opens
-  /// no loop but by the rounding of that.
+  /// The fastest rate of a driven joint, in radians or lengths of the scene [1/s]. A loop that it
+  /// carries as a whole opens by the rounding of that rate. O(drives)
   double fastest_drive() const {
     const Tree& tree = mechanism_.tree();
+    const double length = tree.drives.empty() ? 1 : length_of(mechanism_.scene());
     double fastest = 0;
     for (const Tree::Body& b : tree.bodies) {
       if (b.drive < 0) continue;
       double f = 0, rate = 0, bend = 0;
       tree.drives[static_cast<std::size_t>(b.drive)].evaluate(t_, f, rate, bend);
-      const bool slides =
-          b.kind == JointKind::prismatic;  // it has no rates: is_length() is of those
-      fastest = std::max(fastest, std::abs(rate) / (slides ? length_of(mechanism_.scene()) : 1));
+      // Without rates of its own: is_length() does not know it.
+      fastest = std::max(fastest, std::abs(rate) / (b.kind == JointKind::prismatic ? length : 1));
     }
     return fastest;
   }

@@ -74,7 +74,7 @@ class DaeForm : public Form, public DaeSystem {
   bool start(double t, double* y, double* ydot) override;
   bool differential(int i) const override;
   double scale(int i) const override;
-  double horizon() const override { return 1e6 / sizes_.rate; }
+  double horizon() const override { return sizes_.horizon(); }
   Weight weight(int i) const override;
   bool near_singular(double t, const double* y) override;
   OdeSystem* ode_restart(double t, const double* y, double* state) override;

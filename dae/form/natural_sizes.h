@@ -24,6 +24,9 @@ struct NaturalSizes {
   /// that makes of a joint's momentum.
   void of_momenta(Evaluation<double>& e, const Start& start, double* sizes) const;
 
+  /// The longest span of a run that its first steps are parts of [s]: DaeSystem::horizon()
+  double horizon() const { return 1e6 / rate; }
+
   double rate = 1;             ///< ρ [1/s]
   std::vector<double> q;       ///< nq; of components of quaternions 1
   std::vector<double> way, u;  ///< nv: a length of the scene or a radian, and that times ρ

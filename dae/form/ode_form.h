@@ -30,7 +30,7 @@ class OdeForm : public Form, public OdeSystem {
   int size() const override { return mechanism_.nq() + mechanism_.nv(); }
   double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
   double time_scale() const override { return 1 / sizes_.rate; }
-  double horizon() const override { return 1e6 / sizes_.rate; }
+  double horizon() const override { return sizes_.horizon(); }
   /// Of the run itself; those made for looking at samples are not counted.
   long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
   /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded, and in

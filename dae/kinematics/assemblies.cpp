@@ -136,10 +136,7 @@ class Search {
     MatrixXd null = MatrixXd::Identity(j.cols(), j.cols());
     if (j.rows() > 0) {
       const SingularValues svd(j);
-      const VectorXd& values = svd.values;
-      Eigen::Index rank = 0;
-      while (rank < values.size() && values[rank] > free_value * values[0]) ++rank;
-      null = svd.v.rightCols(j.cols() - rank);
+      null = svd.v.rightCols(j.cols() - svd.rank(free_value));
     }
     if (null.cols() <= spins_) return;
     // Rates that span the freedoms: the pivots of what is left free.

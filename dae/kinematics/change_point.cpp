@@ -42,8 +42,7 @@ bool lose_ranks(PoseCurve& curve, Eigen::Index k, CurvePoint& at) {
     VectorXd step = VectorXd::Zero(n + 1);
     MatrixXd slope = psi.transpose() * J * ways;
     if (kept > 0) {
-      step = -svd.v.leftCols(kept) *
-             (svd.u.leftCols(kept).transpose() * residual).cwiseQuotient(values.head(kept));
+      step = -svd.solve(residual, kept);
       if (step.norm() > 0) slope += turned(step);
     }
     MatrixXd bends(k * (k + 1), k + 1);

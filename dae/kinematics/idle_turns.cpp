@@ -35,8 +35,7 @@ std::vector<Ball> idle_balls(ScaledLoops& loops, double t, const VectorXd& q) {
     if (const int at = column[static_cast<std::size_t>(loops.pattern()[k].column)]; at >= 0)
       J(loops.pattern()[k].row, at) = entries[k];
   const SingularValues svd(J);
-  const VectorXd& values = svd.values;
-  const auto rank = (values.array() > null * values.maxCoeff()).count();
+  const Eigen::Index rank = svd.rank(null);
   const MatrixXd ways = svd.v.rightCols(columns - rank);
   if (ways.cols() == 0) return {};
   std::vector<Ball> idle;

@@ -33,8 +33,7 @@ struct Decomposed {
     scaled = row.asDiagonal() * scaled;
     const SingularValues svd(scaled);
     const VectorXd& sizes = svd.values;
-    Eigen::Index rank = 0;
-    while (rank < sizes.size() && sizes[rank] > rank_tolerance * sizes[0]) ++rank;
+    const Eigen::Index rank = svd.rank(rank_tolerance);
     free = column.asDiagonal() * svd.v.rightCols(n - rank);
     inverse = column.asDiagonal() * svd.v.leftCols(rank) *
               sizes.head(rank).cwiseInverse().asDiagonal() * svd.u.leftCols(rank).transpose() *

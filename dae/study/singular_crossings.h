@@ -158,7 +158,7 @@ class SingularCrossings {
   /// Two motions that meet where a pivot vanishes with the square of the distance, Φ = x y = 0,
   /// keep clear of each other off the constraints, Φ = x y = η: no nearer than √η, where the pivot
   /// is about η, and there either leads into the other. Steps seldom end just there; where rates
-  /// within some twenty √η turn onto another line, one did lead into the other.
+  /// within some thirty √η turn onto another line, one did lead into the other.
   bool is_ambiguous(double t, double pivot, const Interpolant& between,
                     std::vector<double>& state) {
     constexpr double meeting = 10, near = 1000;
@@ -184,14 +184,8 @@ class SingularCrossings {
 
   /// By more than half a radian from the line of way_, angles and lengths of the scene alike.
   bool turns(const Eigen::VectorXd& u) const {
-    double along = 0, first = 0, now = 0;
-    for (Eigen::Index i = 0; i < u.size(); ++i) {
-      const double weight = 1 / (rates_[i] * rates_[i]);
-      along += weight * u[i] * way_[i];
-      first += weight * way_[i] * way_[i];
-      now += weight * u[i] * u[i];
-    }
-    return std::abs(along) < std::cos(0.5) * std::sqrt(first * now);
+    const auto before = way_.cwiseQuotient(rates_), now = u.cwiseQuotient(rates_);
+    return std::abs(before.dot(now)) < std::cos(0.5) * before.norm() * now.norm();
   }
 
   Form& form_;
