@@ -1,4 +1,5 @@
 #include <momenta/core/expression/evaluate.h>
+#include <momenta/core/expression/input_times.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/equations/equation_system.h>
@@ -65,13 +66,21 @@ void integrate_piece(const EquationFile& file, const EquationStart& start,
                      const EquationRunRequest& request,
                      const std::function<bool(double, double, const Interpolant&)>& watch,
                      double spent_s, EquationRun& run) {
-  EquationSystem system(file, start);
+  EquationSystem system(file, start, request.atol);
   IntegrationOptions options;
   options.rtol = request.rtol;
   options.atol = request.atol;
   options.step = request.step;
   options.max_cpu_seconds = request.max_cpu_seconds;
   options.spent_cpu_seconds = spent_s;
+  InputTimes inputs(file.start, request.end);
+  for (const EquationFile::Equation& equation : file.equations)
+    inputs.add(equation.formula, 0, [&](int i) {
+      const int parameter = i - 1 - 2 * file.size();
+      return parameter < 0 ? std::nullopt
+                           : std::optional(file.parameters[static_cast<std::size_t>(parameter)]);
+    });
+  options.stops = inputs.all();
   std::vector<double> times;
   for (int k = static_cast<int>(run.t.size()); k <= request.samples; ++k)
     times.push_back(run.output_time(k, request.samples));

@@ -83,7 +83,6 @@ class Cvode {
       check(CVodeSetInitStep(cvode, std::min(options.initial_step, end - t0)), "CVodeSetInitStep");
     else if (end - t0 > system.horizon())
       check(CVodeSetInitStep(cvode, far_first_step * system.horizon()), "CVodeSetInitStep");
-    if (end > t0) check(CVodeSetStopTime(cvode, end), "CVodeSetStopTime");
   }
 
   const char* name() const { return stiff_ ? "bdf" : "adams"; }
@@ -92,6 +91,7 @@ class Cvode {
 
   bool step(double& t, double end, std::string& cause) {
     const double t0 = t;
+    if (end != stop_) check(CVodeSetStopTime(memory_.get(), stop_ = end), "CVodeSetStopTime");
     evaluation_failed_ = not_finite_ = false;
     system_.begin_step(t, y_.data());
     const int flag = CVode(memory_.get(), end, y_, &t, CV_ONE_STEP);
@@ -208,7 +208,8 @@ class Cvode {
   sundials::LinearSolver linear_solver_;
   sundials::NonlinearSolver fixed_point_;
   sundials::Integrator memory_;
-  bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step
+  double stop_ = std::numeric_limits<double>::quiet_NaN();  ///< that CVODE knows of [s]
+  bool evaluation_failed_ = false, not_finite_ = false;     ///< in a trial of the present step
 };
 
 }  // namespace

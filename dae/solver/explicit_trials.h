@@ -86,7 +86,7 @@ class Trials {
       return last ? end_ : grid;
     }
     // A remainder of 1 % is not worth a step of its own.
-    const double t1 = t + 1.01 * h_ >= end_ ? end_ : t + h_;
+    const double stop = options_.stop_behind(t, end_), t1 = t + 1.01 * h_ >= stop ? stop : t + h_;
     h_ = t1 - t;
     return t1;
   }

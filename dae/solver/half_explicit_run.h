@@ -66,6 +66,7 @@ class HalfExplicitRun {
         t1_(t0) {}
 
   static const char* name() { return Stages::name; }
+  static constexpr bool takes_start = true;  ///< f at a step's start is a stage
   double* y() { return now_.y.data(); }
   double* ydot() { return now_.ydot.data(); }
   const Counters& counters() const { return counters_; }

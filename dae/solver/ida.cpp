@@ -138,6 +138,7 @@ class Ida {
 
   bool step(double& t, double end, std::string& cause) {
     const double t0 = t;
+    if (end != t_end_) check(IDASetStopTime(memory_.get(), t_end_ = end), "IDASetStopTime");
     testing = this;
     evaluation_failed_ = not_finite_ = false;
     floor_.forget();

@@ -3,6 +3,7 @@
 
 #include <momenta/dae/solver/system.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -25,6 +26,15 @@ struct IntegrationOptions {
   double spent_cpu_seconds = 0;     ///< spent before, where a run continues
   const Memory* carried = nullptr;  ///< what the run carried that continues; null: from the start
   bool until_stiff = false;         ///< dp5, dop853, vern9: stop as soon as `stiff_from` is known
+  /// Ascending times [s] at which steps with error control end, where inputs change
+  /// (core/expression/input_times.h).
+  std::vector<double> stops{};
+
+  /// The next of them farther behind t than `apart`, or the end.
+  double stop_behind(double t, double end, double apart = 0) const {
+    const auto next = std::upper_bound(stops.begin(), stops.end(), t + apart);
+    return step > 0 || next == stops.end() ? end : std::min(*next, end);
+  }
 };
 
 /// The work of an integration.

@@ -8,6 +8,7 @@
 #include <momenta/dae/solver/stopping.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +21,9 @@ namespace momenta {
 ///   bool at(double t, double* y, double* ydot);             within the last step, ydot may be
 ///   null;
 ///   bool sample(double t, double* y, double* ydot);         the same for output times, where at()
-///   is less accurate than the steps' ends; may be left out.
+///   is less accurate than the steps' ends; may be left out;
+///   takes_start                                             where formulas are evaluated at a
+///   step's start; may be left out.
 template <class Method>
 class MultistepRun {
  public:
@@ -32,6 +35,7 @@ class MultistepRun {
         outputs_(t0, output_times),
         cpu_(options.max_cpu_seconds, options.spent_cpu_seconds),
         t_(t0),
+        begun_(t0),
         y_(static_cast<std::size_t>(size)),
         ydot_(static_cast<std::size_t>(size)) {}
 
@@ -67,7 +71,7 @@ class MultistepRun {
       }
       const double t0 = t_;
       std::string cause;
-      if (!method_.step(t_, end(), cause)) {
+      if (!method_.step(t_, options_.stop_behind(t_, end(), jump()), cause)) {
         t_ = t0;
         return stop(result, cause);
       }
@@ -81,6 +85,16 @@ class MultistepRun {
         if (!sample(outputs_.time(), result)) return false;
     }
     return true;
+  }
+
+  /// Stops nearer than this are those before and behind a jump (core/expression/input_times.h).
+  /// Methods that evaluate nothing at a step's start need no step across it, by whose length
+  /// multipliers would be divided.
+  double jump() const {
+    if constexpr (requires { Method::takes_start; })
+      return 0;
+    else
+      return 1e-11 * std::max(std::abs(begun_), std::abs(end()));
   }
 
   bool sample_start(IntegrationResult& result) {
@@ -118,7 +132,7 @@ class MultistepRun {
   const Observer& observer_;
   OutputCursor outputs_;
   CpuLimit cpu_;
-  double t_, stop_time_ = 0;
+  double t_, begun_, stop_time_ = 0;
   bool interpolation_failed_ = false;
   std::vector<double> y_, ydot_;
 };

@@ -1,4 +1,5 @@
 #include <momenta/core/scene/bearings_refused.h>
+#include <momenta/dae/event/scene_inputs.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/form_runner.h>
@@ -84,6 +85,7 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   options_.step = s.step;
   options_.spectral_radius = s.spectral_radius;
   options_.max_cpu_seconds = max_cpu_seconds;
+  if (s.step == 0) options_.stops = input_times(mechanism.scene(), start.t, s.end_time);
   if (!s.when_stiff.empty() && !may_change(s)) s.when_stiff.clear();
   when_stiff_ = s.when_stiff;
   options_.until_stiff = !when_stiff_.empty();
