@@ -91,6 +91,26 @@ std::vector<int> parts_of(const structure::Signature& s, const structure::Offset
   return part;
 }
 
+/// Of variables: whether none of the equations that they follow from, one after the other, is
+/// assigned to a derivative. The sum over such a closed set is its number of freedoms.
+std::vector<char> prescribed_in(const structure::Signature& s, const structure::Offsets& offsets) {
+  const int n = s.size();
+  std::vector<char> prescribed(at(n));
+  for (int i = 0; i < n; ++i) {
+    const int j = offsets.transversal[at(i)];
+    prescribed[at(j)] = s(i, j) == 0;
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int i = 0; i < n; ++i) {
+      char& own = prescribed[at(offsets.transversal[at(i)])];
+      for (int j = 0; own && j < n; ++j)
+        if (s.has(i, j) && !prescribed[at(j)]) own = 0, changed = true;
+    }
+  }
+  return prescribed;
+}
+
 /// max c over the equations that hang together with each variable.
 std::vector<int> differentiations_around(const EquationStart& start) {
   const std::vector<int>&equation = start.offsets.equation,
@@ -222,6 +242,7 @@ EquationStart equation_start(const EquationFile& file) {
   start.offsets = *structure::sigma_method(signature);  // the reader saw to an assignment
   start.pantelides = structure::pantelides(signature);
   start.part = parts_of(signature, start.offsets);
+  start.prescribed = prescribed_in(signature, start.offsets);
   start.appears.assign(at(n), 0);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)

@@ -29,6 +29,8 @@ struct EquationStart {
   std::vector<int> index_of;    ///< of each variable, 1 to the index: how rough its errors are
   std::vector<char> appears;    ///< whether der() of it stands in an equation
   std::vector<int> part;        ///< of each variable: one number for those that hang together
+  /// Whether the equations that give each variable have no freedom.
+  std::vector<char> prescribed;
   double time_scale = 1;
 
   /// Whether structure gives the differentiation index.

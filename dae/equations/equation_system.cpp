@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace momenta {
 
 namespace {
 constexpr int largest_dense = 40;
+/// Absolute tolerance of Newton's corrections of variables of index 2 without a derivative, in
+/// their scales. Rounding moves them by ε/h; left alone they would drift from step to step, as each
+/// step extrapolates what one iteration has left.
+constexpr double loosely = 1e-3;
 
 std::vector<char> tested_variables(const EquationStart& start) {
   const std::size_t n = start.index_of.size();
   if (start.point.found.index <= 1) return std::vector<char>(n, 1);
   std::vector<char> tested(n), some(n);
   for (std::size_t j = 0; j < n; ++j) {
-    tested[j] = start.appears[j] && start.index_of[j] == 1;
+    tested[j] = (start.appears[j] || start.prescribed[j]) && start.index_of[j] == 1;
     some[static_cast<std::size_t>(start.part[j])] |= tested[j];
   }
   for (std::size_t j = 0; j < n; ++j)
@@ -23,8 +26,13 @@ std::vector<char> tested_variables(const EquationStart& start) {
 }
 }  // namespace
 
-EquationSystem::EquationSystem(const EquationFile& file, const EquationStart& start)
-    : file_(file), start_(start), residual_(file), slopes_(file), tested_(tested_variables(start)) {
+EquationSystem::EquationSystem(const EquationFile& file, const EquationStart& start, double atol)
+    : file_(file),
+      start_(start),
+      atol_(atol),
+      residual_(file),
+      slopes_(file),
+      tested_(tested_variables(start)) {
   const auto n = static_cast<std::size_t>(file.size());
   const auto& entries = slopes_.entries();
   place_.resize(entries.size());
@@ -87,8 +95,8 @@ bool EquationSystem::start(double /*t*/, double* y, double* ydot) {
 
 double EquationSystem::scale(int i) const {
   const auto k = static_cast<std::size_t>(i);
-  return start_.index_of[k] > 1 && !start_.appears[k] ? std::numeric_limits<double>::infinity()
-                                                      : file_.scales[k];
+  const bool loose = start_.index_of[k] > 1 && !start_.appears[k];
+  return file_.scales[k] * (loose ? std::max(1.0, loosely / atol_) : 1);
 }
 
 DaeSystem::Weight EquationSystem::weight(int i) const {

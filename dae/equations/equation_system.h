@@ -9,13 +9,14 @@ namespace momenta {
 
 /// F(t, y, y') = 0 with its exact Jacobian, dense up to 40 unknowns, from the start found before.
 /// Errors of variables of index k are weighed by h^(k−1), as implicit Runge-Kutta methods need. BDF
-/// of index 2 tests variables of index 1 with a derivative, and where nothing that hangs together
-/// with a variable of index 2 would be tested, that one; variables of index 2 without a derivative
-/// are left out of Newton's norm.
+/// of index 2 tests variables of index 1 with a derivative or prescribed ones, which follow from
+/// equations without a freedom, and where nothing that hangs together with a variable of index 2
+/// would be tested, that one; variables of index 2 without a derivative have a loose tolerance in
+/// Newton's norm.
 class EquationSystem final : public DaeSystem, public StructuredSystem {
  public:
-  /// Both must outlive it. @pre start.point.why is empty
-  EquationSystem(const EquationFile& file, const EquationStart& start);
+  /// Both must outlive it. `atol`: the run's. @pre start.point.why is empty
+  EquationSystem(const EquationFile& file, const EquationStart& start, double atol);
 
   int size() const override { return file_.size(); }
   bool residual(double t, const double* y, const double* ydot, double* r) override;
@@ -27,10 +28,14 @@ class EquationSystem final : public DaeSystem, public StructuredSystem {
   bool is_regular() const override { return start_.jacobian.regular(size()); }
   double scale(int i) const override;
   Weight weight(int i) const override;
+  double unfiltered_part(int i) const override {
+    return start_.prescribed[static_cast<std::size_t>(i)] ? 1 : 0.01;
+  }
 
  private:
   const EquationFile& file_;
   const EquationStart& start_;
+  double atol_;
   Residual<double> residual_;
   Slopes<double> slopes_;
   JacobianPattern pattern_;         ///< empty: dense

@@ -37,7 +37,9 @@ double FilteredError::norm(const double* e, const double* weights, double h) {
   for (std::size_t i = 0; i < n_; ++i) {
     if (!system_.differential(static_cast<int>(i))) continue;
     const int power = system_.weight(static_cast<int>(i)).power;
-    const double error = weights[i] * std::pow(h, power) * filtered_[i];
+    const double part = system_.unfiltered_part(static_cast<int>(i));
+    const double error =
+        weights[i] * std::pow(h, power) * std::max(std::abs(filtered_[i]), std::abs(part * e[i]));
     sum += error * error;
   }
   return std::sqrt(sum / static_cast<double>(n_));

@@ -6,8 +6,11 @@
 //
 //   J(c)⁻¹ c ∂F/∂y' e,      J(c) = ∂F/∂y + c ∂F/∂y',
 //
-// and is what is tested, of a variable of weight power k h^k times. Source: Brenan, Campbell,
-// Petzold, Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
+// and is what is tested, of a variable of weight power k h^k times. It has nothing of an x that
+// g(x, t) = 0 prescribes, however fast: of such the estimate itself is tested, which z has no part
+// in, and of others a small part of it (DaeSystem::unfiltered_part), in which changes of z are
+// lost. Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in
+// Differential-Algebraic Equations, ch. 5.
 
 #include <momenta/dae/solver/newton_matrix.h>
 

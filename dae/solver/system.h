@@ -169,6 +169,10 @@ class DaeSystem {
   /// The weight of y_i.
   virtual Weight weight(int i) const { return {differential(i) ? 0 : -1, scale(i)}; }
 
+  /// The part of the error estimate of y_i, as it is, that BDF of index 2 tests next to the
+  /// filtered one (filtered_error.h).
+  virtual double unfiltered_part(int /*i*/) const { return 0; }
+
   /// The longest span of a run [s] of which first steps, and the least steps near t = 0, are parts:
   /// a farther end is no scale of the motion.
   virtual double horizon() const { return 1e12; }

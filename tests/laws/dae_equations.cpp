@@ -479,6 +479,37 @@ TEST(EquationRuns, TestVariablesOfIndexTwoWhereThereAreNoOthers) {
   EXPECT_LT(run(alone, "ida", 1e-8).counters.steps, 200);
 }
 
+// x follows from an equation without a freedom, and no dynamics hold the steps: each sample of it
+// is tested, and of der(x).
+TEST(EquationRuns, TestWhatEquationsPrescribe) {
+  struct Case {
+    std::vector<std::string> variables, equations;
+    std::string values;
+  };
+  const std::vector<Case> cases{
+      {{"x", "l"}, {"der(x) = l", "x = sin(t)"}, ""},
+      {{"x", "y", "l"}, {"der(x) = l", "der(y) = -y", "x = sin(t)"}, ""},
+      {{"x", "y", "l"}, {"der(x) = l + y", "der(y) = -100*y", "x = sin(t)"}, "y = 1"},
+      {{"x", "l", "w"}, {"der(x) = l", "x = sin(t)", "w = cos(3*t)"}, ""},
+      {{"x", "i", "w"}, {"1e-6*der(x) = i", "x = sin(t)", "der(w) = (5 - w)/2"}, ""},
+      {{"x", "z", "l"}, {"der(x) = l*(2 + x)", "z + 0.1*z^3 = sin(t)", "x = z + 0.1*z^3"}, ""}};
+  for (const Case& c : cases)
+    for (const double tolerance : {1e-6, 1e-9}) {
+      const EquationFile file =
+          file_of(c.variables, c.equations, "values = { " + c.values + " }\n[run]\nend = 20\n");
+      const EquationRun r = run(file, "ida", tolerance, 0, 200);
+      double worst = 0, worst_rate = 0;
+      for (std::size_t k = 0; k < r.t.size(); ++k) {
+        worst = equations::larger(worst, std::abs(r.y[k][0] - std::sin(r.t[k])));
+        if (c.variables[1] == "l" && c.variables.size() == 2)
+          worst_rate = equations::larger(worst_rate, std::abs(r.y[k][1] - std::cos(r.t[k])));
+      }
+      EXPECT_LT(worst, 100 * tolerance) << c.equations[0];
+      EXPECT_LT(worst_rate, 1e4 * tolerance) << c.equations[0];
+      EXPECT_LT(r.counters.steps, 3000) << c.equations[0];
+    }
+}
+
 // b = e⁻ᵗ, a = (1 − ηt) b. The simplified iteration contracts by 2η/(1 + η) whatever the step is.
 TEST(EquationRuns, ConvergeWhereDerivativesOfTheStartDoNot) {
   for (const double eta : {0.5, 3.0, 10.0}) {
