@@ -72,11 +72,7 @@ double ParametricMechanism::own_number(const Scene& own, const std::string& name
     if (p.name == name) return p.value;
     known.push_back(p.name);
   }
-  if (name.find('.') != std::string::npos) {
-    const auto fixed = std::find_if(fixed_.rbegin(), fixed_.rend(),
-                                    [&](const Setting& s) { return s.place == name; });
-    return fixed != fixed_.rend() ? fixed->value : numbers_of(text_, file_)(name);
-  }
+  if (name.find('.') != std::string::npos) return numbers_of(text_, file_, fixed_)(name);
   const std::string near = reading::did_you_mean(name, known);
   throw std::invalid_argument(
       reading::in_quotes(name) + ": the scene has no parameter of that name" +

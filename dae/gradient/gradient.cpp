@@ -1,5 +1,6 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/event/scene_inputs.h>
 #include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/differentiable.h>
@@ -16,7 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -29,8 +30,13 @@ using Eigen::VectorXd;
 
 /// A variable has no effect where dJ/dθ times its size is below this part of J.
 constexpr double effect = 1e-10;
-/// Absolute tolerance of tangents, whose rates jump at corners: to less no step gets over them.
-constexpr double least_at_corners = 1e-10;
+/// Least absolute tolerance of tangents: where their rates jump, at corners, no step has a smaller.
+constexpr double least_of_tangents = 1e-10;
+
+/// Of tangents in the norm of the local error, compared with y.
+double tangents_scale_at(double atol) {
+  return std::max(1.0, least_of_tangents / std::max(atol, 1e-300));
+}
 
 std::unique_ptr<FormAdjoint> form_adjoint(const Mechanism& mechanism, const OdeForm& form,
                                           const std::vector<OtherParameter>& others) {
@@ -56,6 +62,8 @@ struct Asked {
     all.atol = result.settings.atol;
     all.step = result.settings.step;
     all.max_cpu_seconds = request.max_cpu_seconds;
+    if (all.step == 0)
+      all.stops = input_times(mechanism.scene(), start.t, result.settings.end_time);
     return all;
   }
   SceneError none(const std::string& why) const {
@@ -123,9 +131,9 @@ void Asked::forward() {
   VectorXd sizes(directions);
   for (int j = 0; j < directions; ++j)
     sizes[j] = result.variables[static_cast<std::size_t>(j)].size;
-  const bool turns = has_corners(mechanism.scene());
-  double tangents_scale = turns ? std::max(1.0, least_at_corners / std::max(s.atol, 1e-300))
-                                : std::numeric_limits<double>::infinity();
+  const bool turns =
+      has_corners(mechanism.scene()) || (functional && !functional->corner().empty());
+  double tangents_scale = tangents_scale_at(s.atol);
   std::optional<TangentSystem> system;
   std::vector<double> times = request.times;
   if (!outputs.empty()) {
@@ -210,8 +218,25 @@ void Asked::adjoint() {
   const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
-  RecordedRun record(form, s.step, s.end_time, butcher_tableau(s.integrator).c,
-                     request.integral || stages->needs_rates());
+  // Steps follow one tangent, and the integral.
+  const std::vector<OtherParameter> no_parameter(1);
+  std::optional<FormTangents> tangents;
+  std::optional<Functional> integrand;
+  std::optional<TangentSystem> followed;
+  std::vector<double> y0 = form.initial(start);
+  IntegrationOptions integration = options();
+  if (s.step == 0 && mechanism.nv() > 0) {
+    tangents.emplace(mechanism, form, no_parameter);
+    if (request.integral)
+      integrand.emplace(request.of, mechanism, std::vector<RunVariable>(1), no_parameter);
+    followed.emplace(form, *tangents, integrand ? &*integrand : nullptr, VectorXd::Ones(1),
+                     tangents_scale_at(s.atol));
+    y0 = followed->initial(y0, any_start_change(mechanism, start, form.momentum_like()));
+    integration.rtol *= followed->tolerance_factor();
+    integration.atol *= followed->tolerance_factor();
+  }
+  RecordedRun record(form, followed ? static_cast<OdeSystem&>(*followed) : form, s.step, s.end_time,
+                     butcher_tableau(s.integrator).c, request.integral || stages->needs_rates());
   Observer observer;
   std::string lost;
   std::vector<double> inside(static_cast<std::size_t>(record.size()));
@@ -219,8 +244,8 @@ void Asked::adjoint() {
     lost = jump_in_step(t0, t1, between, inside);
     return lost.empty() && (!request.progress || request.progress(0.5 * t1)) && record.keep(t0, t1);
   };
-  const IntegrationResult run = integrate(s.integrator, record, start.t, form.initial(start),
-                                          {start.t, s.end_time}, options(), observer);
+  const IntegrationResult run =
+      integrate(s.integrator, record, start.t, y0, {start.t, s.end_time}, integration, observer);
   if (!run.done)
     throw none(!lost.empty() ? lost : record.lost().empty() ? run.reason : record.lost());
   take(run, record.singular_passages());
@@ -355,39 +380,48 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
   return result;
 }
 
-/// Where derivatives turn at corners and steps do not follow them: the largest derivative against
-/// that of half the step, or, of a sweep back, of tangents that steps follow.
+/// Where derivatives turn at corners and steps do not follow them: the largest derivatives, as many
+/// as a forward mode takes, against those of half the step, or, of a sweep back, against tangents
+/// that steps follow.
 void check_corners(const SceneText& scene, const GradientRequest& request, GradientResult& result) {
   constexpr double told = 1e-4, refused = 1e-2;
-  Eigen::Index of = 0;
-  double most = 0;
-  for (Eigen::Index j = 0; j < result.gradient.size(); ++j) {
-    const double change =
-        result.variables[static_cast<std::size_t>(j)].size * std::abs(result.gradient[j]);
-    if (change > most) most = change, of = j;
-  }
-  const std::string& name = result.variables[static_cast<std::size_t>(of)].name;
+  std::vector<Eigen::Index> order(result.variables.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto effect_of = [&](Eigen::Index j) {
+    return result.variables[static_cast<std::size_t>(j)].size * std::abs(result.gradient[j]);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index i, Eigen::Index j) { return effect_of(i) > effect_of(j); });
+  order.resize(std::min<std::size_t>(order.size(), most_forward));
   const bool fixed = request.settings.step > 0;
   GradientRequest other = request;
-  other.by = {name};
+  other.by.clear();
+  for (const Eigen::Index j : order)
+    other.by.push_back(result.variables[static_cast<std::size_t>(j)].name);
   other.mode = fixed && result.adjoint ? GradientMode::adjoint : GradientMode::forward;
   other.settings.step /= 2;
   other.trajectory = false;
   other.progress = {};
   if (request.progress) other.progress = [&](double) { return request.progress(result.end_time); };
   bool ignored = false;
-  const double found = result.gradient[of],
-               expected = by_one_run(scene, other, ignored).gradient[0],
-               apart = std::abs(found - expected);
-  if (!(apart > told * std::abs(expected))) return;
-  std::string sentence =
-      "the derivative by " + reading::in_quotes(name) + " is " + compact(found, 6) + ", but " +
-      compact(expected, 6) + (fixed ? " with half the step" : " by the mode 'forward'") +
-      ", as the motion passes corners (stops, dead bands, friction, laws), where derivatives turn; "
-      "expected " +
-      (fixed ? "shorter steps or a method with error control" : "that mode, or less tolerance");
-  if (apart > refused * std::abs(expected)) throw SceneError(scene.scene().where({}) + sentence);
-  result.remarks.push_back(std::move(sentence));
+  const Eigen::VectorXd expected = by_one_run(scene, other, ignored).gradient;
+  // What is small beside the largest effect is known to a part of that.
+  const double least = 1e-3 * effect_of(order.front());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const RunVariable& variable = result.variables[static_cast<std::size_t>(order[k])];
+    const double found = result.gradient[order[k]], right = expected[static_cast<Eigen::Index>(k)],
+                 size = std::max(std::abs(right), least / variable.size),
+                 apart = std::abs(found - right);
+    if (!(apart > told * size)) continue;
+    std::string sentence =
+        "the derivative by " + reading::in_quotes(variable.name) + " is " + compact(found, 6) +
+        ", but " + compact(right, 6) + (fixed ? " with half the step" : " by the mode 'forward'") +
+        ", as the motion passes corners (stops, dead bands, friction, laws), where derivatives "
+        "turn; expected " +
+        (fixed ? "shorter steps or a method with error control" : "that mode, or less tolerance");
+    if (apart > refused * size) throw SceneError(scene.scene().where({}) + sentence);
+    result.remarks.push_back(std::move(sentence));
+  }
 }
 
 }  // namespace

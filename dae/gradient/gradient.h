@@ -10,11 +10,12 @@
 // (adjoint_run.h; of forms on momenta stage_adjoint.h, on accelerations acceleration_adjoint.h), of
 // which one sweep serves all θ. Derivation: docs/theory/gradients.md.
 //
-// Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Formulas with
-// corners are differentiated on the piece they are on; steps of a method with error control then
-// follow the tangents too, which turn where the motion is smooth. Fixed steps and sweeps back,
-// which do not, are checked by others. Forces that jump at a moment which depends on θ are refused.
-// The mechanism is integrated as it is written.
+// Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Steps of a
+// method with error control follow the tangents and the integral too; before a sweep back, the
+// integral and one tangent. Formulas with corners are differentiated on the piece they are on:
+// tangents turn there where the motion is smooth. Fixed steps and sweeps back are checked there by
+// others. Forces that jump at a moment which depends on θ are refused. The mechanism is integrated
+// as it is written.
 
 #include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/study/run_result.h>

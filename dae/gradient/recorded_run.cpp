@@ -76,7 +76,7 @@ int RecordedRun::stages_ago(const Step& step) const {
 bool RecordedRun::after_step(double t, double* y, bool& changed) {
   if (!kept_.empty() && kept_.back().has_stages)
     std::copy(y, y + width(), kept_.back().states + c_.size() * width());
-  if (!form_.after_step(t, y, changed)) return fail(form_.failure());
+  if (!system_.after_step(t, y, changed)) return fail(system_.failure());
   if (!steps_.empty()) steps_.back().altered = changed;
   return true;
 }
@@ -90,7 +90,7 @@ bool RecordedRun::lost_at(double t, const char* why) {
 
 bool RecordedRun::rhs(double t, const double* y, double* ydot) {
   lost_.clear();
-  if (!form_.rhs(t, y, ydot)) return fail(form_.failure());
+  if (!system_.rhs(t, y, ydot)) return fail(system_.failure());
   if (corrected_stages_) return lost_at(t, too_near_to_pose);
   if (looking_ > 0) return true;
   last_[next_].t = t;

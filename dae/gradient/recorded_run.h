@@ -1,7 +1,8 @@
 #pragma once
 // A form's run whose steps are kept, for a sweep back over them: where each began, how long it was,
 // and, as long as there is memory for them, the states of its stages, which need not be computed
-// again then, with u of (7) there where it is asked for. The steps are those of the run alone.
+// again then, with u of (7) there where it is asked for. Its steps follow one tangent too (see
+// tangent_system.h): what a sweep back carries is as fast.
 // Memory: a state a stage, up to 1 GB, from there on a state a step, up to 4 GB.
 //
 // Stages are told from other evaluations by their times: of a step they are the last s − 1 in a row
@@ -26,11 +27,13 @@ class RecordedRun final : public OdeSystem {
     bool altered = false;
   };
 
-  /// `fixed_step`: 0 with error control. `end`: of the run [s]. `c`: the method's abscissas.
-  /// `with_rates`: u of stages is kept with them.
-  RecordedRun(OdeForm& form, double fixed_step, double end, std::vector<double> c,
-              bool with_rates = false)
+  /// `system`: what is integrated, the form alone or with tangents after its state. `fixed_step`: 0
+  /// with error control. `end`: of the run [s]. `c`: the method's abscissas. `with_rates`: u of
+  /// stages is kept with them.
+  RecordedRun(OdeForm& form, OdeSystem& system, double fixed_step, double end,
+              std::vector<double> c, bool with_rates = false)
       : form_(form),
+        system_(system),
         fixed_step_(fixed_step),
         end_(end),
         c_(std::move(c)),
@@ -63,34 +66,35 @@ class RecordedRun final : public OdeSystem {
   /// Why the last trial of a step had no derivatives, one sentence; empty: it had.
   const std::string& lost() const { return lost_; }
 
-  int size() const override { return form_.size(); }
+  int size() const override { return system_.size(); }
   bool rhs(double t, const double* y, double* ydot) override;
   bool after_step(double t, double* y, bool& changed) override;
-  bool has_after_step() const override { return form_.has_after_step(); }
+  bool has_after_step() const override { return system_.has_after_step(); }
   void begin_step(double t, const double* y) override {
     passages_.end_step();
     evaluated_ = 0;
-    form_.begin_step(t, y);
+    system_.begin_step(t, y);
     start_.assign(y, y + width());
     if (with_rates_) find_first_rates();
     reset_ = false;
   }
-  bool first_derivative(double* ydot) override { return reset_ = form_.first_derivative(ydot); }
-  SingularityHandling wanted_handling() const override { return form_.wanted_handling(); }
+  bool first_derivative(double* ydot) override { return reset_ = system_.first_derivative(ydot); }
+  SingularityHandling wanted_handling() const override { return system_.wanted_handling(); }
   void set_handling(SingularityHandling handling) override {
     corrected_stages_ = handling == SingularityHandling::position;
-    form_.set_handling(handling);
+    system_.set_handling(handling);
   }
   double motion_error_squared(double t, const double* y, const double* error, double rtol,
                               double atol) override {
-    return form_.motion_error_squared(t, y, error, rtol, atol);
+    return system_.motion_error_squared(t, y, error, rtol, atol);
   }
   void look_on(bool looking) override {
     looking_ += looking ? 1 : -1;
-    form_.look_on(looking);
+    system_.look_on(looking);
   }
-  double scale(int i) const override { return form_.scale(i); }
-  double time_scale() const override { return form_.time_scale(); }
+  double scale(int i) const override { return system_.scale(i); }
+  double time_scale() const override { return system_.time_scale(); }
+  double horizon() const override { return system_.horizon(); }
 
  private:
   std::size_t width() const { return static_cast<std::size_t>(form_.size()); }
@@ -102,6 +106,7 @@ class RecordedRun final : public OdeSystem {
   int stages_ago(const Step& step) const;
 
   OdeForm& form_;
+  OdeSystem& system_;
   double fixed_step_, end_;
   std::vector<double> c_;
   bool with_rates_;

@@ -67,7 +67,7 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const RunVariable& v) { return v.name == name; });
     if (found == all.end() && is_place(name)) {
-      if (!number_at) number_at = numbers_of(scene.text, scene.file);
+      if (!number_at) number_at = numbers_of(scene.text, scene.file, scene.fixed);
       chosen.push_back(of_scene(name, number_at(name)));
       continue;
     }

@@ -1,8 +1,10 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/gradient/stage_matrix.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +66,31 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
                                 " of its value the scene is assembled otherwise");
   }
   return tangents;
+}
+
+Eigen::MatrixXd any_start_change(const Mechanism& mechanism, const Start& start, bool momenta) {
+  const int nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
+  const auto e = mechanism.evaluation<double>();
+  e->place(start.t, start.q.data());
+  StageMatrix matrix(mechanism);
+  matrix.factor(*e);
+  using Eigen::MatrixXd, Eigen::VectorXd;
+  const VectorXd units = LoopUnits(mechanism).rates;
+  VectorXd change(nv), right = VectorXd::Zero(nv + m), still(m), momentum(nv), resting(nv);
+  for (int i = 0; i < nv; ++i) change[i] = units[i] * (i % 3 == 1 ? -1 : 1);
+  e->move(nullptr);
+  if (m > 0) e->velocities(still.data());
+  e->momenta(nullptr, resting.data());
+  e->move(change.data());
+  if (m > 0) e->velocities(right.data() + nv);
+  right.tail(m) = still - right.tail(m);
+  change += matrix.solve(right).col(0).head(nv);
+  MatrixXd dy(nq + nv, 1);
+  e->coordinate_rates(start.q.data(), change.data(), dy.data());
+  e->move(change.data());
+  e->momenta(nullptr, momentum.data());
+  dy.bottomRows(nv) = momenta ? momentum - resting : change;
+  return dy;
 }
 
 }  // namespace momenta

@@ -22,4 +22,8 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
                              const FormOptions& options, const std::vector<RunVariable>& variables,
                              const std::vector<OtherParameter>& others);
 
+/// A change of y(0) that the loops allow, by displacements and rates of 1 in all joints, with signs
+/// that vary: what a run amplifies shows in its tangent. Size of y × 1. One factorisation
+Eigen::MatrixXd any_start_change(const Mechanism& mechanism, const Start& start, bool momenta);
+
 }  // namespace momenta

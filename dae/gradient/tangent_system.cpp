@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <utility>
 
 namespace momenta {
@@ -31,7 +30,8 @@ double TangentSystem::tolerance_factor() const {
 double TangentSystem::scale(int i) const {
   if (i < n_) return form_.scale(i);
   const int k = i - n_ - extra();
-  if (k < 0 || k >= n_ * directions_) return std::numeric_limits<double>::infinity();
+  if (k < 0) return 1;  // J
+  if (k >= n_ * directions_) return tangents_scale_ / sizes_[k - n_ * directions_];
   return tangents_scale_ * form_.scale(k % n_) / sizes_[k / n_];
 }
 

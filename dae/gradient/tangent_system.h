@@ -4,12 +4,12 @@
 //
 //   (y, J, Y, dJ)' = (f, g, f_y Y + f_θ, dg),
 //
-// by the method's own stages, so that Y is the derivative of the y that the method finds. Steps are
-// chosen by y alone, as in a run without tangents: the others have no part in the norm of the local
-// error, and the tolerance is that of n unknowns among all, tol √(n/N). Step sizes are held: their
-// own dependence on θ is as small as the local error. Where f has corners f_y jumps, and a step
-// over one leaves an error of first order in Y which y does not show: there Y counts in the norm
-// as y does, in its units over those of θ, so that steps end close to the corner.
+// by the method's own stages, so that Y is the derivative of the y that the method finds. All of
+// them count in the norm of the local error, in their units over those of θ: a motion that rests,
+// or one whose fast modes do, lets steps grow until Y is unstable; an integrand may be faster than
+// the motion; and where f has corners f_y jumps, and a step over one leaves an error of first order
+// in Y. The tolerance is that of n unknowns among all, tol √(n/N). Step sizes are held: their own
+// dependence on θ is as small as the local error.
 
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/functional.h>
@@ -20,8 +20,7 @@ namespace momenta {
 class TangentSystem final : public OdeSystem {
  public:
   /// `integrand` null: no J. All must outlive it.
-  /// `sizes` of θ; `tangents_scale`: of Y in the norm of the error, beside that of y; infinity: it
-  /// does not count.
+  /// `sizes` of θ; `tangents_scale`: of Y in the norm of the error, compared with that of y.
   TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand, Eigen::VectorXd sizes,
                 double tangents_scale);
 
@@ -66,6 +65,7 @@ class TangentSystem final : public OdeSystem {
   }
   double scale(int i) const override;
   double time_scale() const override { return form_.time_scale(); }
+  double horizon() const override { return form_.horizon(); }
 
  private:
   int extra() const { return integrand_ ? 1 : 0; }

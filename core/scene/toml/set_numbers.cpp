@@ -160,13 +160,14 @@ void set_numbers(Value& root, const std::vector<Setting>& settings) {
 
 namespace momenta {
 
-std::function<double(const std::string&)> numbers_of(std::string_view text,
-                                                     const std::string& file) {
+std::function<double(const std::string&)> numbers_of(std::string_view text, const std::string& file,
+                                                     const std::vector<Setting>& settings) {
   struct Read {
     reading::Value root;
     reading::Parameters parameters;
   };
   reading::Value root = reading::parse_toml(text, file);
+  reading::set_numbers(root, settings);
   const reading::Parameters parameters(root, file);
   const auto read = std::make_shared<Read>(Read{std::move(root), parameters});
   return [read](const std::string& place) {
