@@ -108,22 +108,46 @@ class Reader {
     throw SceneError(scene_.where(formula.at) + who + ", " + in_quotes(formula.text) +
                      ", takes nothing that changes, expected t, a coordinate or a rate in it");
   }
-  /// L with jumps or corners in q̇ has no momenta there.
+  /// L with jumps or corners in q̇ has no momenta there; where what multiplies rates jumps with q,
+  /// forces are impulses.
   Expression smooth_in_rates(const FormulaSpec& formula, const std::string& who) {
     using O = formula::Operation;
     Expression read = this->read(formula, who);
-    std::vector<int> rate;  // of each value on the tape one that it takes; -1: none
+    // Of each value on the tape a rate and a coordinate that it takes, and one that it jumps with;
+    // -1: none.
+    std::vector<int> rate, place, jump;
+    const auto take = [](std::vector<int>& all, const formula::Instruction& in) {
+      int taken = -1;
+      for (const int of : {in.a, in.b, in.c})
+        if (of >= 0) taken = std::max(taken, all[static_cast<std::size_t>(of)]);
+      all.push_back(taken);
+      return taken;
+    };
     for (const formula::Instruction& in : read.tape()) {
-      int& taken = rate.emplace_back(-1);
       if (in.operation == O::variable) {
-        if (in.a >= n_ && in.a < 2 * n_) taken = in.a;
+        place.push_back(in.a < n_ ? in.a : -1);
+        rate.push_back(in.a >= n_ && in.a < 2 * n_ ? in.a : -1);
+        jump.push_back(-1);
         continue;
       }
-      for (const int of : {in.a, in.b, in.c})
-        if (of >= 0) taken = std::max(taken, rate[static_cast<std::size_t>(of)]);
-      const bool turns = in.operation == O::less || in.operation == O::less_equal ||
-                         in.operation == O::sign || in.operation == O::floor ||
-                         in.operation == O::abs || in.operation == O::min || in.operation == O::max;
+      const int taken = take(rate, in), of_place = take(place, in), with = take(jump, in);
+      const bool jumps = in.operation == O::less || in.operation == O::less_equal ||
+                         in.operation == O::sign || in.operation == O::floor;
+      const bool turns =
+          jumps || in.operation == O::abs || in.operation == O::min || in.operation == O::max;
+      if (jumps) jump.back() = of_place;
+      const bool sums =
+          in.operation == O::add || in.operation == O::subtract || in.operation == O::negative;
+      const auto numbers = [&](int of) { return of < 0 || is_number(read, of); };
+      const bool scales = (in.operation == O::multiply && (numbers(in.a) || numbers(in.b))) ||
+                          (in.operation == O::divide && numbers(in.b));
+      if (taken >= 0 && with >= 0 && !sums && !scales)
+        throw SceneError(scene_.where(formula.at) + who + ": what multiplies the rate " +
+                         in_quotes(all_.names[static_cast<std::size_t>(taken)]) +
+                         " has an 'if', sign or floor of the coordinate " +
+                         in_quotes(all_.names[static_cast<std::size_t>(with)]) +
+                         ", expected a formula without jumps there, as with tanh or abs: the "
+                         "momenta jump where it does");
       if (!turns || taken < 0) continue;
       const std::string_view name = formula::function_name(in.operation);
       throw SceneError(scene_.where(formula.at) + who + ": its " +
@@ -133,6 +157,9 @@ class Reader {
                        "like belong to force");
     }
     return read;
+  }
+  static bool is_number(const Expression& formula, int i) {
+    return formula.tape()[static_cast<std::size_t>(i)].operation == formula::Operation::number;
   }
   void expect_equation(const Expression& equation, const LagrangianSpec::Constraint& c,
                        const std::string& who) const {

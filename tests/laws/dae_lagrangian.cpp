@@ -338,12 +338,20 @@ TEST(Lagrangian, RefusesWhatIsNoMechanism) {
                  "formula that is smooth in the rates");
   expect_refused(x + "kinetic = \"x.dot^2 + if(y.dot < x, 1, 2)*y.dot^2\"\n",
                  "kinetic: its 'if' turns with the rate 'y.dot'");
+  for (const char* factor : {"sign(x - 0.5)*x.dot", "y.dot*floor(2*x)", "if(x > 0, 1, 2)*y.dot^2",
+                             "(x.dot + floor(y))^2"})
+    expect_refused(x + "lagrangian = \"x.dot^2 + y.dot^2 + " + factor + "\"\n",
+                   "has an 'if', sign or floor of the coordinate '");
+  for (const char* smooth : {"x.dot*abs(x)", "y.dot*max(0, x)", "if(x > 0, x, 2*x)",
+                             "2*(y.dot^2 - if(x > 0, x, 0)^2)", "x.dot*sign(t - 1)"})
+    EXPECT_NO_THROW(Mechanism(typed(x + "lagrangian = \"x.dot^2 + y.dot^2 + " + smooth + "\"\n")))
+        << smooth;
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2\"\nconstraints = [{ name = \"c\", equation "
                      "= \"abs(x) + abs(y) - 1\" }]\n",
                  "constraint 'c' has 'abs', where no second derivative may exist; expected a "
                  "smooth formula");
   EXPECT_NO_THROW(Mechanism(
-      typed(x + "lagrangian = \"abs(x)*x.dot^2 + y.dot^2 + x.dot^2 + sign(x)*x.dot\"\n")));
+      typed(x + "lagrangian = \"abs(x)*x.dot^2 + y.dot^2 + x.dot^2 + tanh(9*x)*x.dot\"\n")));
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2*sin(x.dot)\"\n",
                  "kinetic: its second derivative by 'x.dot' twice has 'x.dot' in it");
   expect_refused(

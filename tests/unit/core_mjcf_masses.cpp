@@ -56,6 +56,29 @@ TEST_F(MjcfMasses, GeomsThatWeighNothingLeaveTheInertial) {
             rounding);
 }
 
+TEST_F(MjcfMasses, WhatHasTwoMeaningsIsRefused) {
+  const std::string b = inertial("2", ".1 .3 .25");
+  const auto refused = [&](const std::string& a) {
+    try {
+      arm("", a, b);
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  for (const char* turn : {"quat='1 1 0 0'", "euler='1 0 0'", "zaxis='1 0 0'"}) {
+    const std::string found =
+        refused(std::string("<inertial pos='0 0 0' mass='1' fullinertia='1 2 2.5 .1 .2 .3' ") +
+                turn + "/>");
+    EXPECT_NE(found.find("expected diaginertia with an orientation, or fullinertia alone"),
+              std::string::npos)
+        << found;
+  }
+  const std::string found = refused("<geom type='sphere' size='.1' fromto='0 0 0 1 0 0'/>");
+  EXPECT_NE(found.find("expected a capsule, cylinder, ellipsoid or box"), std::string::npos)
+      << found;
+}
+
 // At the point of the body that its own pos names in its parent.
 TEST_F(MjcfMasses, WhatHasNoMassIsRaisedAsMuJoCoRaisesIt) {
   const auto hung = [&](const std::string& compiler, const std::string& c) {

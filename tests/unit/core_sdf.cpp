@@ -99,6 +99,16 @@ TEST_F(Sdf, JointsLockedByTheirLimitsAreFixed) {
       chain(joint("j", "universal", "a", "b", axis("1 0 0", lock) + axis("0 1 0", lock, "axis2")));
   EXPECT_EQ(OpenChain(two).nv(), 3);
   EXPECT_EQ(two.remarks, (std::vector<std::string>{"left out: joint limits without a range (2)"}));
+  EXPECT_EQ(chain(joint("j", "continuous", "a", "b",
+                        axis("1 2 2", "<limit><lower>-1</lower><upper>1</upper></limit>")))
+                .remarks,
+            (std::vector<std::string>{
+                "left out: limits of continuous joints, which SDF does not limit (1)"}));
+  EXPECT_EQ(chain(joint("j", "ball", "a", "b",
+                        axis("1 0 0", "<dynamics><damping>1</damping></dynamics>")))
+                .remarks,
+            (std::vector<std::string>{
+                "left out: springs and dampers of joints of several degrees of freedom (1)"}));
 }
 
 // The joints of a gear are known by axes that files round: 1.5708 is π/2 to 4e-6.

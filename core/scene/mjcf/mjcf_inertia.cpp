@@ -117,8 +117,12 @@ MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles) {
   body.com = node.vector("pos");
   if (node.has("fullinertia")) {
     if (node.has("diaginertia")) node.fail("has diaginertia and fullinertia, expected one of them");
+    for (const std::string_view key : orientation_keys)
+      if (node.has(key))
+        node.fail("has fullinertia and " + std::string(key) +
+                  ", expected diaginertia with an orientation, or fullinertia alone");
     const std::vector<double> m = node.numbers("fullinertia", 6);
-    body.inertia = rotated(symmetric(m[0], m[1], m[2], m[3], m[4], m[5]), read_turn(node, angles));
+    body.inertia = symmetric(m[0], m[1], m[2], m[3], m[4], m[5]);
   } else {
     const Vector3d moments = node.vector("diaginertia");
     body.inertia = rotated(moments.asDiagonal().toDenseMatrix(), read_turn(node, angles));
@@ -129,6 +133,10 @@ MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles) {
 MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest, MjcfMeshes& meshes,
                       Remarks& remarks) {
   const auto shape = static_cast<GeomShape>(geom.word("type", geom_shapes, 0));
+  if (geom.has("fromto") && shape != GeomShape::capsule && shape != GeomShape::cylinder &&
+      shape != GeomShape::ellipsoid && shape != GeomShape::box)
+    geom.fail("fromto", "stands on a " + std::string(geom_shapes[static_cast<std::size_t>(shape)]) +
+                            ", expected a capsule, cylinder, ellipsoid or box");
   if (shape == GeomShape::plane || shape == GeomShape::hfield) return {};
   const bool by_mass = geom.has("mass");
   const double given = by_mass ? geom.number("mass") : geom.number("density", 1000);

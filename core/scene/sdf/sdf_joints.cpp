@@ -219,7 +219,18 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
   }
   if (two && joint.axis.cross(joint.axis2).norm() < parallel_slack)
     node.fail("has axes that are parallel, expected two directions");
-  if (node.text("type") == "continuous") springs[0].limits.reset();
+  if (node.text("type") == "continuous" && springs[0].limits) {
+    springs[0].limits.reset();
+    model.remarks.left_out("limits of continuous joints, which SDF does not limit");
+  }
+  if (const auto axis = node.child("axis"); axis && joint.spec.kind == JointKind::spherical) {
+    JointSpec given;
+    read_dynamics(*axis, given, model.remarks);
+    if (given.damping != 0 || given.stiffness != 0)
+      model.remarks.left_out("springs and dampers of joints of several degrees of freedom");
+    if (given.friction != 0)
+      model.remarks.left_out("friction of joints of several degrees of freedom");
+  }
   for (JointSpec& s : springs) {
     if (s.limits != locked) continue;
     s.limits.reset();
