@@ -17,7 +17,9 @@ using Eigen::VectorXd;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// What of an eigenvalue of K̃ along y is rounding: how K changes between poses that cannot be told
-/// apart, what the forces lose that it is made of, and what the solver itself loses.
+/// apart, what the forces lose that it is made of, and what the solver itself loses. Of two poses
+/// on opposite sides the lesser change counts: a force with a corner at the pose has another K on
+/// one side, however near.
 class Rounding {
  public:
   Rounding(const Mechanism& mechanism, const Equilibrium& at, const MatrixXd& N, const MatrixXd& K,
@@ -33,8 +35,11 @@ class Rounding {
     e->place(at.t, at.q.data());
     e->move(delta.data());
     stiffness_ = force_scales(mechanism, *e).cwiseQuotient(natural_units(mechanism)).cwiseSqrt();
-    for (int k = 0; k < poses; ++k) {
-      for (double& x : delta) x = way * within(random);
+    for (int k = 0; k < 2 * poses; ++k) {
+      if (k % 2 == 1)
+        delta = -delta;
+      else
+        for (double& x : delta) x = way * within(random);
       qdot.setZero();
       e->place(at.t, at.q.data());
       e->coordinate_rates(at.q.data(), delta.data(), qdot.data());
@@ -44,7 +49,9 @@ class Rounding {
   }
   double along(const VectorXd& y) const {
     double most = 0;
-    for (const MatrixXd& change : changes_) most = std::max(most, std::abs(y.dot(change * y)));
+    for (std::size_t k = 0; k + 1 < changes_.size(); k += 2)
+      most = std::max(
+          most, std::min(std::abs(y.dot(changes_[k] * y)), std::abs(y.dot(changes_[k + 1] * y))));
     const double forces = stiffness_.dot((N_ * y).cwiseAbs());
     return 10 * most + 4 * epsilon * forces * forces + floor_;
   }
@@ -52,8 +59,8 @@ class Rounding {
  private:
   double floor_;
   const MatrixXd& N_;
-  VectorXd stiffness_;  ///< roots of natural stiffnesses of the rates
-  std::vector<MatrixXd> changes_;
+  VectorXd stiffness_;             ///< roots of natural stiffnesses of the rates
+  std::vector<MatrixXd> changes_;  ///< of poses and their opposites, in turn
 };
 
 struct OnBasis {

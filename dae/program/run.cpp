@@ -7,11 +7,13 @@
 #include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/stiffness_in_words.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/passed_limits.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/timing.h>
 #include <momenta/dae/text/number_text.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -28,7 +30,6 @@ namespace momenta::program {
 namespace {
 
 constexpr int most_drawn = 4000;  // samples that a page is made of
-constexpr double slack = 10;      // [s] beyond twice the limit: then also a step is cut short
 
 void print_singular_crossings(const RunResult& result) {
   constexpr std::size_t most = 12;
@@ -205,7 +206,8 @@ int run(const Options& o) {
   request.reactions = o.reactions;
   request.multipliers = true;
   request.events = true;
-  request.max_cpu_seconds = limit;
+  // What came before counts.
+  if (limit > 0) request.max_cpu_seconds = std::max(1e-3, limit - thread_seconds());
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
   RunFiles files(o, *mechanism, s);
@@ -223,8 +225,10 @@ int run(const Options& o) {
   watch_signals();
   StudyResult study;
   {
-    // A run looks at its time between steps, and one step of a large mechanism may take long.
-    const CpuLimit within_steps(limit > 0 ? 2 * limit + slack : 0);
+    // A run looks at its time between steps, and one step of a large mechanism may take long: it is
+    // cut short half a limit later, a second at least.
+    const CpuLimit within_steps(limit > 0 ? request.max_cpu_seconds + std::max(1.0, 0.5 * limit)
+                                          : 0);
     study.runs.push_back(run_form(*mechanism, a.start, request));
   }
   RunResult& result = study.runs.front();
@@ -233,7 +237,7 @@ int run(const Options& o) {
     time_runs(integrated.mechanism(), integrated.start(), study.runs,
               {.how = timing_named(o.timing),
                .budget = 3,
-               .max_cpu_seconds = request.max_cpu_seconds,
+               .max_cpu_seconds = limit,
                .going_on = {},
                .at_step = request.going_on});
   line.show("");

@@ -40,9 +40,11 @@ void expect_numbers(const RunSettings& s) {
   expect(positive(s.end_time), "the end time", s.end_time, "a positive number of seconds");
   expect(s.samples >= 1 && s.samples <= most_samples, "the number of samples", s.samples,
          "1 to 10000000");
-  expect(not_negative(s.rtol), "rtol", s.rtol, "a tolerance, not negative");
+  expect(s.rtol >= 0 && s.rtol < 1, "rtol", s.rtol, "a tolerance, 0 or more, below 1");
   expect(not_negative(s.atol), "atol", s.atol, "a tolerance, not negative");
   expect(not_negative(s.step), "the step", s.step, "a positive number of seconds, or 0: none");
+  expect(!(s.step > 0) || s.end_time / s.step < 1e12, "the step", s.step,
+         "one of which fewer than 1e12 make the run");
   const struct {
     const char* name;
     double x;

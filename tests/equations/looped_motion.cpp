@@ -47,8 +47,12 @@ RealVector LoopedMotion::accelerations(Real t, const Eigen::VectorXd& q,
   const Eigen::LLT<RealMatrix> mass(motion_.mass_matrix(t, q));
   const RealMatrix scaled = mass.matrixL().solve(J.transpose()).transpose();
   Eigen::CompleteOrthogonalDecomposition<RealMatrix> rows;
-  // Redundant rows are independent where loops are open, by as much.
-  rows.setThreshold(std::max(1e-11L, 100 * Real(open(static_cast<double>(t), q))));
+  // Redundant rows are independent where loops are open, by as much. Rows of joints that are all
+  // held are rounding beside L⁻¹, the size of those that move (lengths are about 1).
+  const Real moves =
+      mass.matrixL().solve(RealMatrix::Identity(u.size(), u.size())).cwiseAbs().maxCoeff();
+  rows.setThreshold(std::max({1e-11L, 100 * Real(open(static_cast<double>(t), q)),
+                              1e-11L * moves / scaled.cwiseAbs().maxCoeff()}));
   rows.compute(scaled);
   const RealVector change = rows.solve(off);
   return free - mass.matrixU().solve(change);

@@ -8,6 +8,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/mechanism.h>
 
+#include <sys/resource.h>
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -224,6 +225,25 @@ TEST_F(Program, StoppedRunSaysWhyAndKeepsItsSamples) {
   EXPECT_EQ(summary.at("status"), "time limit");
   const std::string trajectory = text_of(results / "trajectory.csv");
   EXPECT_GT(std::count(trajectory.begin(), trajectory.end(), '\n'), 2);
+}
+
+// What comes before the run counts, and a step of seconds is cut short.
+TEST_F(Program, CpuLimitHoldsWithinLongSteps) {
+  const fs::path star = folder_ / "star.toml";
+  const Outcome made = call("make star --n 2000");
+  ASSERT_EQ(made.status, 0) << made.err;
+  std::ofstream(star) << made.out;
+  const auto used = [] {
+    rusage all{};
+    getrusage(RUSAGE_CHILDREN, &all);
+    return static_cast<double>(all.ru_utime.tv_sec + all.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(all.ru_utime.tv_usec + all.ru_stime.tv_usec);
+  };
+  const double limit = 1, before = used();
+  const Outcome o = call("run '" + star.string() +
+                         "' --form stabilised-index2 --timing none --samples 2 --cpu-limit 1");
+  EXPECT_EQ(o.status, 1) << o.out << o.err;
+  EXPECT_LT(used() - before, limit + 1.5);  // a second for the step, and what prints the results
 }
 
 TEST_F(Program, RunNamesRowsThatFade) {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/modes_study.h>
@@ -248,6 +249,31 @@ TEST(SmallMotions, SettlingEndsInAMinimumBelowTheStart) {
     e->move(rest.data());
     e->joint_forces(r.equilibrium.q.data(), rest.data(), nullptr, nullptr, left.data());
     EXPECT_LT(left.cwiseQuotient(force_scales(mechanism, *e)).cwiseAbs().maxCoeff(), 1e-12) << name;
+  }
+}
+
+// A spring on one side alone touches at the pose: on either side the motion has a frequency, and no
+// mode is rigid.
+TEST(SmallMotions, AtACornerAreThoseOfOneSide) {
+  const std::string slide =
+      "[[body]]\nname = \"m\"\nmass = 1\ninertia = 1\n[[joint]]\nname = \"X\"\nkind = "
+      "\"prismatic\"\nchild = \"m\"\naxis = \"x\"\nstiffness = 1\n[[force]]\nkind = "
+      "\"torque\"\njoint = \"X\"\nlaw = \"-3*max(0, q)\"\n";
+  const std::string typed = "[lagrangian]\ncoordinates = [\"x\", \"y\"]\n";
+  const std::string both = typed +
+                           "kinetic = \"(x.dot^2 + y.dot^2)/2\"\npotential = \"x^2/2 + y^2 + "
+                           "1.5*max(0, x)^2\"\nposition = [0, 0]\n";
+  for (const std::string& text : {slide, both}) {
+    const ModesResult found = modes_of(parse_scene(text, "corner.toml"));
+    EXPECT_EQ(found.rigid(), 0) << text;
+    EXPECT_STREQ(found.nature(), "stable") << text;
+    for (const Mode& mode : found.spectrum.modes) {
+      const double omega = std::abs(mode.s.imag());
+      EXPECT_LT(
+          std::min({std::abs(omega - 1), std::abs(omega - 2), std::abs(omega - std::sqrt(2.0))}),
+          1e-9)
+          << omega;
+    }
   }
 }
 
