@@ -32,11 +32,9 @@ ClosedMotion::ClosedMotion(const Mechanism& mechanism, const GivenMotion& motion
       q_(std::move(start)),
       within_(within),
       tolerance_(std::max(closed, loops_.units().rounding)) {
-  // Redundant equations that a file's rounding lets differ stay open as they were at the start.
   if (motion.rows.empty()) return;
-  const VectorXd gap = loops_.gap(motion.rows.front().t, q_);
-  const double open = gap.size() > 0 ? gap.cwiseAbs().maxCoeff() : 0;
-  if (open > tolerance_ && open <= left_by_files) tolerance_ = 4 * open;
+  contradiction_ = contradiction(loops_, motion.rows.front().t, q_, independent_pivot);
+  tolerance_ = std::max(tolerance_, contradiction_.left);
   for (const LoopIsland& island : islands_.all()) {
     if (static_cast<int>(island.rates.size()) > most_rates)
       throw SceneError(
@@ -165,20 +163,25 @@ void ClosedMotion::refuse(double t, const VectorXd& missing, int worst, const st
                    loop_word(mechanism_) + "s allow");
 }
 
+/// Φ beyond what contradictions leave, in units.
+VectorXd ClosedMotion::gap(double t, const VectorXd& q) {
+  return loops_.gap(t, q) - contradiction_.open;
+}
+
 /// Newton's method to a target that is near. False where it does not come there.
 bool ClosedMotion::close(double t, const VectorXd& target, VectorXd& q) {
   for (int k = 0; k < most_corrections; ++k) {
-    const VectorXd gap = loops_.gap(t, q);
+    const VectorXd gap = this->gap(t, q);
     const double open = gap.size() > 0 ? gap.cwiseAbs().maxCoeff() : 0;
     if (!std::isfinite(open)) return false;
-    islands_.factor(loops_);
+    islands_.factor(loops_, contradiction_.pivot);
     VectorXd step = nearest(-gap, way_to(q, target), t);
     const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
     if (!std::isfinite(length)) return false;
     if (length > 1) step /= length;
     q = loops_.moved(q, step);
-    if (length > settled || open > settled) continue;
-    const VectorXd after = loops_.gap(t, q);
+    if (length > settled || open > std::max(settled, tolerance_)) continue;
+    const VectorXd after = this->gap(t, q);
     return after.size() == 0 || after.cwiseAbs().maxCoeff() <= tolerance_;
   }
   return false;
@@ -201,7 +204,7 @@ void ClosedMotion::go_to(std::size_t number, VectorXd& q, VectorXd& u, VectorXd&
     const double part = static_cast<double>(k) / steps;
     const VectorXd target = k == steps ? row.q : moved(from, part * way);
     if (close(t, target, q_)) continue;
-    const VectorXd gap = loops_.gap(t, q_);
+    const VectorXd gap = this->gap(t, q_);
     Eigen::Index worst = 0;
     const double open = gap.size() > 0 ? gap.cwiseAbs().maxCoeff(&worst) : 0;
     char text[32];
@@ -226,7 +229,7 @@ void ClosedMotion::go_to(std::size_t number, VectorXd& q, VectorXd& u, VectorXd&
   // Rates, of nonholonomic rows too; then accelerations.
   loops_.rows = all_rows_;
   loops_.gap(t, q_);
-  islands_.factor(loops_);
+  islands_.factor(loops_, contradiction_.pivot);
   const VectorXd& unit = loops_.units().rates;
   Evaluation<double>& e = loops_.evaluation();
   VectorXd rate(mechanism_.m()), force(mechanism_.nv());

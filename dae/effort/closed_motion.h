@@ -6,10 +6,12 @@
 //   Φ_q u = −Φ_t,            min |E (u_p + N z) − v|₂       rates
 //   Φ_q u̇ = −Φ̈(u, u̇ = 0),    min |E (u̇_p + N z) − a|₂       accelerations
 //
-// E picks the given rates. Where E N has full column rank the motion is one motion. Where it has
-// more rows than columns, loops and motion must agree: what is left of |E … − d| tells by how much
-// they do not, and E_Nᵀ of it which loop pulls.
+// Of redundant equations that a file's rounding lets differ Φ stays what it is at the start
+// (contradiction.h). E picks the given rates. Where E N has full column rank the motion is one
+// motion. Where it has more rows than columns, loops and motion must agree: what is left of |E … −
+// d| tells by how much they do not, and E_Nᵀ of it which loop pulls.
 
+#include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/effort/given_motion.h>
 #include <momenta/dae/effort/loop_islands.h>
 
@@ -36,6 +38,7 @@ class ClosedMotion {
   LoopIslands& islands() { return islands_; }
 
  private:
+  Eigen::VectorXd gap(double t, const Eigen::VectorXd& q);
   bool close(double t, const Eigen::VectorXd& target, Eigen::VectorXd& q);
   Eigen::VectorXd nearest(const Eigen::VectorXd& right, const Eigen::VectorXd& wanted, double t);
   Eigen::VectorXd way_to(const Eigen::VectorXd& q, const Eigen::VectorXd& target);
@@ -52,6 +55,7 @@ class ClosedMotion {
   std::vector<Column> rates_;
   std::vector<bool> positions_, all_rows_;  ///< rows of Φ in Newton's steps; all
   std::vector<std::vector<int>> given_;     ///< by island: places of given rates among its rates
+  Contradiction contradiction_;             ///< at the start
   Eigen::VectorXd q_;
   double within_, gap_ = 0, rate_gap_ = 0, tolerance_;
 };

@@ -92,7 +92,7 @@ LoopIslands::LoopIslands(const Mechanism& mechanism)
   }
 }
 
-void LoopIslands::factor(ScaledLoops& loops) {
+void LoopIslands::factor(ScaledLoops& loops, double pivot) {
   if (row_.empty()) return;
   const std::vector<double> entries = loops.jacobian();
   std::vector<Eigen::MatrixXd> transposed(islands_.size());
@@ -110,7 +110,7 @@ void LoopIslands::factor(ScaledLoops& loops) {
     LoopIsland& island = islands_[k];
     if (island.rows.empty()) continue;
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(transposed[k]);
-    qr.setThreshold(independent_pivot);
+    qr.setThreshold(pivot);
     const Eigen::Index n = transposed[k].rows(), rank = qr.rank();
     const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
     island.Y = Q.leftCols(rank);

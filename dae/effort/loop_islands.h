@@ -45,8 +45,9 @@ class LoopIslands {
   /// The mechanism must outlive it. O(bodies + length of all loops)
   explicit LoopIslands(const Mechanism& mechanism);
 
-  /// J, Y, N and R at the pose that `loops` placed last. Cost: a dense QR of each island.
-  void factor(ScaledLoops& loops);
+  /// J, Y, N and R at the pose that `loops` placed last; pivots count above this part of the
+  /// largest. Cost: a dense QR of each island.
+  void factor(ScaledLoops& loops, double pivot = independent_pivot);
 
   const std::vector<LoopIsland>& all() const { return islands_; }
   /// The island of a rate.

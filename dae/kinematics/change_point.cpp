@@ -53,7 +53,8 @@ bool lose_ranks(PoseCurve& curve, Eigen::Index k, CurvePoint& at) {
     if (!(size < near_by)) return false;
     at = curve.moved(at, step);
     if (!(curve.way(start, at).norm() < near_by)) return false;
-    if (size < settled && !(size < 0.1 * before)) return values[n - k] < rank_is_lost * values[0];
+    if (size < settled && !(size < 0.1 * before))
+      return values[n - k] < curve.lost(rank_is_lost) * values[0];
     before = size;
   }
   return false;
@@ -71,7 +72,7 @@ bool change_point_near(PoseCurve& curve, const CurvePoint& near, CurvePoint& at)
     at = near;
     if (!lose_ranks(curve, k, at)) continue;
     return curve.linearise(at, residual, J) <= closes_all &&
-           curve.reciprocal_condition(at.q) < rank_is_lost;
+           curve.reciprocal_condition(at.q) < curve.lost(rank_is_lost);
   }
   return false;
 }

@@ -252,6 +252,14 @@ class Follower {
     }
     rows_before(to, to.s_rate(), end);
     if (result_.end != MoveResult::End::stopped) return;
+    // The next row may be where the step ends, to rounding.
+    const double s = next_s(to.s_rate(), end);
+    if (std::abs(to.s - s) <= 1e-9 * by_) {
+      CurvePoint there;
+      if (!curve_->step_to(to, s, there)) there = to;
+      there.s = s;
+      return arrive(there, end);
+    }
     rows_->pass(*curve_, to);
     move_on(to);
   }
@@ -311,7 +319,7 @@ class Follower {
 
   /// Where the curve is closed, it ends.
   void close(const CurvePoint& to) {
-    if (!is_beginning(to)) return;
+    if (!has_left_ || !is_beginning(to)) return;
     if (!request_.to)
       result_.end = MoveResult::End::closed;
     else if (std::abs(to.s) < 1e-9)
@@ -320,7 +328,12 @@ class Follower {
   }
 
   /// The same pose, passed the same way.
-  bool is_beginning(CurvePoint to) const {
+  bool is_beginning(const CurvePoint& to) const {
+    return is_there(to) && to.tangent.dot(beginning_.tangent) > 0;
+  }
+
+  /// The same pose as at the start.
+  bool is_there(CurvePoint to) const {
     constexpr double same = 1e-7;
     for (const auto& body : mechanism_.tree().bodies)  // −q is the same turn
       if (const int at = body.q + body.nq - 4;
@@ -331,7 +344,7 @@ class Follower {
       if (angles_[static_cast<std::size_t>(i)]) apart = std::remainder(apart, turn);
       if (std::abs(apart) > same * std::max(1.0, std::abs(beginning_.q[i]))) return false;
     }
-    return to.tangent.dot(beginning_.tangent) > 0;
+    return true;
   }
 
   /// Limits of coordinates on the way; then from there.
@@ -349,6 +362,7 @@ class Follower {
         widen(reach, to.q[body.q + i]);
       }
     look_back(to);
+    has_left_ = has_left_ || !is_there(to);
     before_ = here_;
     here_ = to;
   }
@@ -384,6 +398,7 @@ class Follower {
   PoseCurve* curve_ = nullptr;
   CurvePoint here_, beginning_, change_;
   std::optional<CurvePoint> before_;
+  bool has_left_ = false;  ///< the start, by more than what is the same pose
   // s of the curve is in units: pose.s = unit_ s.
   double step_ = longest_step, by_ = 0, unit_ = 1;
   MoveResult result_;

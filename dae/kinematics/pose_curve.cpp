@@ -67,7 +67,7 @@ void PoseCurve::take_jacobian(const Eigen::VectorXd& q) {
 }
 
 double PoseCurve::take_residual(const Eigen::VectorXd& q, double s) {
-  all_.head(m_) = loops_.gap(t_, q);
+  all_.head(m_) = loops_.gap(t_, q) - contradiction_.open;
   int row = m_;
   for (const SweptCoordinate& c : swept_)
     all_[row++] = (q[c.q] - start_[c.q] - c.amount * s) / loops_.units().rates[c.u];
@@ -75,14 +75,16 @@ double PoseCurve::take_residual(const Eigen::VectorXd& q, double s) {
     all_[row++] = (held.value(q) - held.value(start_)) / loops_.units().rates[held.rates.front()];
   for (int i = 0; i < n_; ++i) residual_[i] = all_[rows_[static_cast<std::size_t>(i)]];
   residual_[n_] = 0;
-  return all_.size() > 0 ? all_.cwiseAbs().maxCoeff() : 0;
+  const double open = all_.size() > 0 ? all_.cwiseAbs().maxCoeff() : 0;
+  return std::max(open - contradiction_.left, residual_.cwiseAbs().maxCoeff());
 }
 
-bool PoseCurve::choose_rows(const Eigen::VectorXd& q) {
+/// Up to `most` of them: along the curve no more than n are independent but by contradictions.
+bool PoseCurve::choose_rows(const Eigen::VectorXd& q, int most) {
   take_jacobian(q);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian_.transpose());
-  qr.setThreshold(independent);
-  const auto rank = static_cast<int>(qr.rank());
+  qr.setThreshold(contradiction_.pivot);
+  const int rank = std::min(static_cast<int>(qr.rank()), most);
   freedoms_ = n_ + 1 - rank;
   free_rates_.clear();
   if (freedoms_ > 1) {
@@ -90,7 +92,7 @@ bool PoseCurve::choose_rows(const Eigen::VectorXd& q) {
     Eigen::MatrixXd ordered(jacobian_.rows(), n_);
     for (int i = 0; i < n_; ++i) ordered.col(i) = jacobian_.col(i);
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns(ordered);
-    columns.setThreshold(independent);
+    columns.setThreshold(contradiction_.pivot);
     for (auto i = columns.rank(); i < n_ && static_cast<int>(free_rates_.size()) < freedoms_ - 1;
          ++i)
       free_rates_.push_back(static_cast<int>(columns.colsPermutation().indices()[i]));
@@ -105,7 +107,8 @@ bool PoseCurve::choose_rows(const Eigen::VectorXd& q) {
 
 bool PoseCurve::start(const Eigen::VectorXd& q, CurvePoint& point) {
   start_ = q;
-  if (!choose_rows(q)) return false;
+  contradiction_ = contradiction(loops_, t_, q, independent);
+  if (!choose_rows(q, n_ + 1)) return false;
   point.q = q;
   point.s = 0;
   // J has full rank: what is missing of it is τ.
@@ -155,7 +158,16 @@ bool PoseCurve::correct(CurvePoint& point, const Eigen::VectorXd& row) {
   return false;
 }
 
+/// Poses are off by what numbers contradict each other, over the pivots of the rows chosen: those
+/// that are farthest from depending on each other are chosen there.
+void PoseCurve::renew_rows(const CurvePoint& from) {
+  if (contradiction_.left == 0 || from.orientation == 0) return;
+  CurvePoint known = from;
+  choose_rows(from.q, known);
+}
+
 bool PoseCurve::step(const CurvePoint& from, double h, CurvePoint& to) {
+  renew_rows(from);
   to.q = loops_.moved(from.q, h * from.tangent.head(n_));
   to.s = from.s + h * from.s_rate();
   if (!correct(to, from.tangent)) return false;
@@ -166,6 +178,7 @@ bool PoseCurve::step(const CurvePoint& from, double h, CurvePoint& to) {
 bool PoseCurve::step_to(const CurvePoint& from, double s, CurvePoint& to) {
   const double h = (s - from.s) / from.s_rate();
   if (!std::isfinite(h)) return false;
+  renew_rows(from);
   to.q = loops_.moved(from.q, h * from.tangent.head(n_));
   to.s = s;
   if (!correct(to, Eigen::VectorXd::Unit(n_ + 1, n_))) return false;
@@ -209,7 +222,7 @@ double PoseCurve::reciprocal_condition(const Eigen::VectorXd& q) {
 }
 
 bool PoseCurve::choose_rows(const Eigen::VectorXd& q, CurvePoint& known) {
-  if (!choose_rows(q)) return false;
+  if (!choose_rows(q, n_)) return false;
   const int before = known.orientation;
   if (!orient(known)) return false;
   if (known.orientation != before) sign_ = -sign_;

@@ -18,14 +18,16 @@
 // is followed straight across. By Cramer's rule det B(e_s) = τ_s det B(τ): its sign is the branch
 // of assembly, and changes at these two kinds of points alone.
 //
-// Rows of J that follow from others are left out; that they hold is looked at after every step.
-// Where the rows chosen depend on each other and others do not, they are chosen anew.
+// Rows of J that follow from others are left out; that they hold is looked at after every step, up
+// to what they contradict the others by at the start (contradiction.h). Where the rows chosen
+// depend on each other and others do not, they are chosen anew.
 // Source: Allgower, Georg, Introduction to Numerical Continuation Methods, ch. 2, 6, 8.
 
-#include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/kinematics/held_coordinate.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,6 +83,9 @@ class PoseCurve {
   bool derivatives(const CurvePoint& at, Eigen::VectorXd& u, Eigen::VectorXd& udot);
   /// The n-th singular value of J, of all its rows, over the first: zero at a change point.
   double reciprocal_condition(const Eigen::VectorXd& q);
+  /// The part of J's first singular value below which ranks are lost: that of numbers that agree,
+  /// or more where they contradict each other.
+  double lost(double agreed) const { return std::max(agreed, contradiction_.pivot); }
   /// Chooses rows that are independent at q. `known`, a point where the old ones are as well, keeps
   /// its orientation. False where J has lost rank.
   bool choose_rows(const Eigen::VectorXd& q, CurvePoint& known);
@@ -90,7 +95,7 @@ class PoseCurve {
   /// The orientation of a point by the rows chosen now.
   bool orient(CurvePoint& point);
 
-  /// F and J of the rows chosen; |F|∞ of all.
+  /// F and J of the rows chosen; |F|∞ of all, of spare ones what is beyond the contradiction.
   double linearise(const CurvePoint& at, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian);
   /// The pose and s after a step (nv + 1), on the curve or not.
   CurvePoint moved(const CurvePoint& from, const Eigen::VectorXd& step);
@@ -101,16 +106,18 @@ class PoseCurve {
 
  private:
   void size_rows();
-  bool choose_rows(const Eigen::VectorXd& q);
+  bool choose_rows(const Eigen::VectorXd& q, int most);
+  void renew_rows(const CurvePoint& from);
   void take_jacobian(const Eigen::VectorXd& q);
-  /// F of all rows; of `rows_` alone into residual_.
+  /// |F|∞ as linearise(); F of `rows_` alone into residual_.
   double take_residual(const Eigen::VectorXd& q, double s);
   bool correct(CurvePoint& point, const Eigen::VectorXd& row);
   bool take_tangent(const Eigen::VectorXd& along, CurvePoint& point);
 
   ScaledLoops loops_;
   double t_, tolerance_;
-  int n_, m_;  ///< nv; rows of Φ
+  Contradiction contradiction_;  ///< at the start
+  int n_, m_;                    ///< nv; rows of Φ
   std::vector<SweptCoordinate> swept_;
   std::vector<HeldCoordinate> held_;
   Eigen::VectorXd start_;        ///< q where s = 0

@@ -1,12 +1,20 @@
-#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/pose_motion.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace momenta {
 
 using Eigen::VectorXd;
+
+namespace {
+
+constexpr int most_corrections = 30;
+constexpr double least_open = 1e-10;  // of contradictions, in units: below it Φ = 0 is met
+constexpr double settled = 1e-12;     // of a correction, in units
+
+}  // namespace
 
 PoseMotion::PoseMotion(const Mechanism& mechanism)
     : mechanism_(mechanism),
@@ -15,22 +23,22 @@ PoseMotion::PoseMotion(const Mechanism& mechanism)
       phi_(mechanism.m()),
       delta_(mechanism.nv()),
       rest_(VectorXd::Zero(mechanism.nv())),
-      closed_(1e-10 * std::max(1.0, length_of(mechanism.scene()))) {
+      closed_(1e-10 * std::max(1.0, length_of(mechanism.scene()))),
+      loops_(mechanism) {
   if (mechanism.m() > 0) solver_ = make_loop_solver(mechanism, *e_);
 }
 
 bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, VectorXd& q) {
-  constexpr int most_corrections = 30;
   q.resize(from.size());
   if (!delta.allFinite()) return false;
   motion_.move(*e_, from.data(), delta.data(), q.data());
   if (!solver_) return q.allFinite();
-  e_->place(t, from.data());
-  e_->positions(phi_.data());
-  const double open_before = phi_.cwiseAbs().maxCoeff();
-  const double closed = open_before <= left_by_files * std::max(1.0, length_of(mechanism_.scene()))
-                            ? std::max(closed_, 4 * open_before)  // what redundant equations leave
-                            : closed_;
+  if (!contradiction_) contradiction_ = contradiction(loops_, t, from, 0);
+  return contradiction_->left > least_open ? close_least(t, q) : close(t, q);
+}
+
+/// To Φ = 0.
+bool PoseMotion::close(double t, VectorXd& q) {
   VectorXd next(q.size());
   double before = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < most_corrections; ++pass) {
@@ -38,7 +46,7 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
     e_->positions(phi_.data());
     const double open = phi_.cwiseAbs().maxCoeff();
     if (!std::isfinite(open)) return false;
-    if (open == 0 || (open <= closed && !(open < 0.5 * before))) return true;
+    if (open == 0 || (open <= closed_ && !(open < 0.5 * before))) return true;
     before = open;
     if (!solver_->position_correction(t, q.data(), delta_.data()) || !delta_.allFinite())
       return false;
@@ -47,7 +55,34 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
   }
   e_->place(t, q.data());
   e_->positions(phi_.data());
-  return phi_.cwiseAbs().maxCoeff() <= closed;
+  return phi_.cwiseAbs().maxCoeff() <= closed_;
+}
+
+/// To what numbers that contradict each other leave of it.
+bool PoseMotion::close_least(double t, VectorXd& q) {
+  const VectorXd& unit = loops_.units().rates;
+  LeastNorm steps(loops_.pattern(), mechanism_.m(), mechanism_.nv());
+  VectorXd next(q.size()), free(mechanism_.nv());
+  double before = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < most_corrections; ++pass) {
+    const VectorXd gap = loops_.gap(t, q) - contradiction_->open;
+    if (!gap.allFinite()) return false;
+    const std::vector<double> j = loops_.jacobian();
+    double largest = 0;
+    for (const double x : j) largest = std::max(largest, std::abs(x));
+    steps.factor(j, std::max(contradiction_->pivot, rank_tolerance) * largest);
+    delta_ = -steps.solve(gap).cwiseProduct(unit);
+    e_->place(t, q.data());
+    if (!delta_.allFinite() || !free_velocity(t, q, momentum(delta_), free)) return false;
+    delta_ -= free;
+    const double size = delta_.cwiseQuotient(unit).cwiseAbs().maxCoeff();
+    if (size <= settled && !(size < 0.5 * before))
+      return gap.cwiseAbs().maxCoeff() <= contradiction_->left;
+    before = size;
+    motion_.move(*e_, q.data(), delta_.data(), next.data());
+    q.swap(next);
+  }
+  return false;
 }
 
 bool PoseMotion::let_go(double t, const VectorXd& q, VectorXd& udot, VectorXd& lambda) {

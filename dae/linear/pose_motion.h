@@ -1,11 +1,19 @@
 #pragma once
 // Poses on Φ = 0 near a pose: q ∘ exp δ, then corrections of least change in the mass metric.
+//
+// Where numbers contradict each other (contradiction.h), Φ goes back to what it is at the first
+// pose instead, by damped steps, −(JᵀJ + λ²)⁻¹ Jᵀ φ, λ what does not count of J: equations that are
+// independent by rounding alone ask for nothing. Of each step what the loops leave free is taken
+// away in the mass metric.
 
+#include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/form/coordinate_motion.h>
+#include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 namespace momenta {
 
@@ -32,12 +40,17 @@ class PoseMotion {
   int singular_joint() const { return solver_ ? solver_->singular_joint() : e_->singular_joint(); }
 
  private:
+  bool close(double t, Eigen::VectorXd& q);
+  bool close_least(double t, Eigen::VectorXd& q);
+
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;  ///< null without loops
   CoordinateMotion motion_;
   Eigen::VectorXd phi_, delta_, rest_;
   double closed_;
+  ScaledLoops loops_;
+  std::optional<Contradiction> contradiction_;  ///< at the first pose
 };
 
 }  // namespace momenta

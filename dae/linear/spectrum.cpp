@@ -23,18 +23,18 @@ constexpr int most_reduced = 300;  // degrees of freedom whose modes are all fou
 constexpr int usual_count = 20;    // of more
 
 /// Φ_q at the equilibrium in the units of kkt/row_scales.h: D^(−1/2) Φ_q diag(M)^(−1/2).
-struct ScaledLoops {
+struct LoopsThere {
   std::vector<double> values;  ///< by the mechanism's pattern
   VectorXd column;             ///< diag(M)^(−1/2), rates without inertia as the heaviest
 };
 
-ScaledLoops scaled_loops(const Mechanism& mechanism, const Equilibrium& at) {
+LoopsThere loops_there(const Mechanism& mechanism, const Equilibrium& at) {
   const auto e = mechanism.evaluation<double>();
   e->place(at.t, at.q.data());
   VectorXd inertia(mechanism.nv());
   e->mass_diagonal(inertia.data());
   const double heaviest = std::max(inertia.maxCoeff(), std::numeric_limits<double>::min());
-  ScaledLoops s;
+  LoopsThere s;
   s.column = inertia.unaryExpr([&](double x) { return 1 / std::sqrt(x > 0 ? x : heaviest); });
   if (mechanism.m() == 0) return s;
   const auto& pattern = mechanism.constraint_pattern();
@@ -50,7 +50,7 @@ ScaledLoops scaled_loops(const Mechanism& mechanism, const Equilibrium& at) {
 
 /// The motions that the loops allow, by the right singular vectors that belong to no singular
 /// value, Φ_q being of this rank.
-MatrixXd motions_dense(const Mechanism& mechanism, const ScaledLoops& s, int rank) {
+MatrixXd motions_dense(const Mechanism& mechanism, const LoopsThere& s, int rank) {
   const int nv = mechanism.nv(), m = mechanism.m();
   if (m == 0) return MatrixXd::Identity(nv, nv);
   MatrixXd a = MatrixXd::Zero(m, nv);
@@ -62,7 +62,7 @@ MatrixXd motions_dense(const Mechanism& mechanism, const ScaledLoops& s, int ran
 
 /// The same by projecting random vectors onto them, as many as there are.
 MatrixXd motions_by_projection(const Mechanism& mechanism, const Equilibrium& at,
-                               const ScaledLoops& s, const std::vector<int>& dependent,
+                               const LoopsThere& s, const std::vector<int>& dependent,
                                int mobility) {
   LocalPencil pencil(mechanism);
   pencil.leave_out(dependent);
@@ -147,7 +147,7 @@ Spectrum spectrum(const Mechanism& mechanism, const Equilibrium& at, int count, 
   found.mobility = mechanism.nv();
   if (mechanism.nv() == 0) return found;
   refuse_springs_without_length(mechanism, at);
-  const ScaledLoops scaled = scaled_loops(mechanism, at);
+  const LoopsThere scaled = loops_there(mechanism, at);
   if (mechanism.m() > 0) {
     const auto e = mechanism.evaluation<double>();
     e->place(at.t, at.q.data());

@@ -333,6 +333,41 @@ TEST(Kinematics, ACurveMayStartAtADeadPoint) {
   }
 }
 
+// The curve of a parallelogram is a straight line in its angles: steps along it end on rows, which
+// are rows all the same.
+TEST(Kinematics, StepsThatEndOnARowLoseNone) {
+  const Scene scene = FourBar{1, 2, 1, 2}.scene(1, -1);
+  for (const double by : {0.3, 0.1, 0.07, 0.05, 0.02}) {
+    MoveRequest request;
+    request.by = by;
+    const MoveResult round = moved(scene, "O", request);
+    ASSERT_EQ(round.end, MoveResult::End::closed) << by << round.why;
+    EXPECT_EQ(round.change_points(), 2);
+    request.to = 3;
+    for (const MoveResult& r : {round, moved(scene, "O", request)}) {
+      int k = 0;
+      for (const MovedPose& pose : r.poses)
+        if (pose.kind == MovedPose::Kind::sample && std::abs(pose.s - k * by) < 1e-12) {
+          EXPECT_NEAR(pose.q[2], 1 + k * by, 1e-11);
+          ++k;
+        }
+      EXPECT_EQ(k, static_cast<int>(r.poses.back().s / by + 1e-9) + 1) << by;
+    }
+  }
+}
+
+// Steps smaller than what is told apart from the start are not back there.
+TEST(Kinematics, TheStartIsLeftBeforeItIsComeBackTo) {
+  for (const double by : {1e-6, 1e-7, 3e-8, 1e-8, 1e-9}) {
+    MoveRequest request;
+    request.by = by;
+    request.most_rows = 20;
+    const MoveResult r = moved(example("four_bar"), "O", request);
+    EXPECT_EQ(r.end, MoveResult::End::stopped) << by;
+    EXPECT_EQ(r.poses.size(), 20U) << by;
+  }
+}
+
 TEST(Kinematics, WhatIsNotReachedIsSaid) {
   MoveRequest request;
   request.to = 1.2;
