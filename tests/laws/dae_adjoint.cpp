@@ -185,7 +185,9 @@ void expect_same(const SceneText& scene, GradientRequest request, double within,
   EXPECT_TRUE(adjoint.adjoint);
   const bool own_steps = forward.settings.step == 0;
   if (own_steps) within = 1e3 * forward.settings.rtol;
-  if (!own_steps) EXPECT_EQ(forward.steps, adjoint.steps);
+  if (!own_steps) {
+    EXPECT_EQ(forward.steps, adjoint.steps);
+  }
   EXPECT_NEAR(forward.value, adjoint.value,
               (own_steps ? within : 1e-13) * (1 + std::abs(forward.value)));
   double largest = whole + std::abs(forward.value);
