@@ -29,13 +29,13 @@ void set_timer(double seconds) {
 
 }  // namespace
 
-CpuLimit::CpuLimit(double seconds) {
+CpuLimit::CpuLimit(double seconds, double spent) {
   lift();
   if (!(seconds > 0)) return;
   std::snprintf(notice, sizeof notice,
-                "momenta: stopped after %g s of CPU time, with no result; expected it within "
+                "momenta: stopped after %.3g s of CPU time, with no result; expected it within "
                 "--cpu-limit\n",
-                seconds);
+                spent + seconds);
   std::signal(SIGPROF, end_here);
   set_timer(std::clamp(seconds, 1e-6, 1e9));
 }

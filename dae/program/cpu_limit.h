@@ -6,8 +6,8 @@ namespace momenta::program {
 
 class CpuLimit {
  public:
-  /// [s]; 0: none. The last one made is in force.
-  explicit CpuLimit(double seconds);
+  /// [s] from now on, after `spent` before; 0: none. The last one made is in force.
+  explicit CpuLimit(double seconds, double spent = 0);
   ~CpuLimit() { lift(); }
   CpuLimit(const CpuLimit&) = delete;
   CpuLimit& operator=(const CpuLimit&) = delete;

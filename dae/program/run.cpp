@@ -227,8 +227,8 @@ int run(const Options& o) {
   {
     // A run looks at its time between steps, and one step of a large mechanism may take long: it is
     // cut short half a limit later, a second at least.
-    const CpuLimit within_steps(limit > 0 ? request.max_cpu_seconds + std::max(1.0, 0.5 * limit)
-                                          : 0);
+    const double more = request.max_cpu_seconds + std::max(1.0, 0.5 * limit);
+    const CpuLimit within_steps(limit > 0 ? more : 0, limit - request.max_cpu_seconds);
     study.runs.push_back(run_form(*mechanism, a.start, request));
   }
   RunResult& result = study.runs.front();
