@@ -116,7 +116,7 @@ void InputTimes::add(const Expression& formula, int time,
   }
 }
 
-/// Between two places whose values differ: where it jumps, or both of them.
+/// Between two places whose values differ: where it jumps, or eighths of the way between.
 void InputTimes::add_change(const std::function<double(double)>& input, double from, double to,
                             double low, double high, double least) {
   const double change = std::abs(high - low);

@@ -30,10 +30,6 @@ class InputTimes {
   /// A formula, its variable t, and the numbers of variables that stay as they are.
   void add(const Expression& formula, int time,
            const std::function<std::optional<double>(int)>& number = {});
-  /// A function of the time.
-  void add(const std::function<double(double)>& input);
-  /// A time by itself.
-  void add_corner(double t);
   /// What varies between these times alone. Methods that evaluate ends of steps alone have to see
   /// it too: eighths of it.
   void add_pulse(double from, double to);
@@ -42,6 +38,10 @@ class InputTimes {
   std::vector<double> all() const;
 
  private:
+  /// A function of the time.
+  void add(const std::function<double(double)>& input);
+  /// A time by itself.
+  void add_corner(double t);
   /// How far from a jump the times before and behind it are.
   double beside_jump() const {
     return std::max(1e-12 * (end_ - t0_), 16 * std::numeric_limits<double>::epsilon() *

@@ -1,4 +1,3 @@
-#include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/effort/motion_reactions.h>
 #include <momenta/dae/joint_places.h>
 
@@ -78,8 +77,9 @@ VectorXd MotionReactions::transmitted(const VectorXd& q, const VectorXd& u, cons
 }
 
 VectorXd MotionReactions::at(const VectorXd& q, const VectorXd& u, const VectorXd& udot) {
-  const Contradiction found = contradiction(loops_, 0, q, independent_pivot);
-  islands_.factor(loops_, found.pivot);
+  if (!contradiction_) contradiction_ = contradiction(loops_, 0, q, independent_pivot);
+  (void)loops_.gap(0, q);
+  islands_.factor(loops_, contradiction_->pivot);
   VectorXd tau;
   (void)actuation_.efforts(loops_, islands_, 0, q, u, udot, tau);
   const VectorXd lambda = actuation_.multipliers(loops_, islands_, tau);

@@ -13,10 +13,12 @@
 // Source: Berkof, Lowen, A new method for completely force balancing simple linkages, J. Eng. Ind.
 // 91 (1969), for what those are.
 
+#include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/effort/actuation.h>
 #include <momenta/dae/measure/reactions.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,7 @@ class MotionReactions {
   const Mechanism& mechanism_;
   ScaledLoops loops_;
   LoopIslands islands_;
+  std::optional<Contradiction> contradiction_;  ///< at the first pose
   Actuation actuation_;
   std::unique_ptr<WrenchSweep> sweep_;
 };

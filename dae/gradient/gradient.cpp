@@ -54,6 +54,7 @@ struct Asked {
   const FormOptions& gains;
   StartAdjoint* start_adjoint;  ///< null: the start is differenced
   LawJumps& jumps;
+  std::vector<double> stops;  ///< where inputs change [s]
   GradientResult& result;
 
   IntegrationOptions options() const {
@@ -62,8 +63,7 @@ struct Asked {
     all.atol = result.settings.atol;
     all.step = result.settings.step;
     all.max_cpu_seconds = request.max_cpu_seconds;
-    if (all.step == 0)
-      all.stops = input_times(mechanism.scene(), start.t, result.settings.end_time);
+    all.stops = stops;
     return all;
   }
   SceneError none(const std::string& why) const {
@@ -359,8 +359,16 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
       }
   LawJumps jumps(mechanism, near, !form.momentum_like());
   Asked asked{
-      request, mechanism, start, form, others, options, start_adjoint ? &*start_adjoint : nullptr,
-      jumps,   result};
+      request,
+      mechanism,
+      start,
+      form,
+      others,
+      options,
+      start_adjoint ? &*start_adjoint : nullptr,
+      jumps,
+      s.step == 0 ? input_times(mechanism.scene(), start.t, s.end_time) : std::vector<double>{},
+      result};
   if (result.adjoint)
     asked.adjoint();
   else

@@ -1,7 +1,7 @@
 // Redundant equations whose numbers a file has rounded: every verb takes the mechanism for what it
 // is, as far as the numbers agree.
 
-#include "equations/linkages.h"
+#include "equations/swept_four_bar.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -20,6 +20,7 @@ namespace momenta::dae_contradictions {
 namespace {
 
 using Eigen::VectorXd;
+using equations::FourBar, equations::moved;
 using std::numbers::pi;
 
 std::string digits(double x, int count) {
@@ -58,40 +59,16 @@ Scene bennett(int count) {
   return parse_scene(text);
 }
 
-/// A four-bar of these lengths, one of its pins tilted out of the plane: five loop equations of
-/// rank two.
-Scene tilted(double by, double crank, double coupler, double rocker, double ground, double theta) {
-  const double x = crank * std::cos(theta) - ground, y = crank * std::sin(theta),
-               r = std::hypot(x, y),
-               rocked = std::atan2(y, x) -
-                        std::acos((r * r + rocker * rocker - coupler * coupler) / (2 * r * rocker)),
-               along = std::atan2(rocker * std::sin(rocked) - y, rocker * std::cos(rocked) - x);
-  Scene s;
-  s.gravity = {0, -9.81, 0};
-  s.bodies = {equations::rod("crank"), equations::rod("coupler"), equations::rod("rocker")};
-  s.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
-              equations::hinge("A", "crank", "coupler", {crank, 0, 0}, along - theta),
-              equations::hinge("C", "ground", "rocker", {ground, 0, 0}, rocked)};
+/// A four-bar, one of its pins tilted out of the plane: five loop equations of rank two.
+Scene tilted(double by, const FourBar& bars, double theta) {
+  Scene s = bars.scene(theta, -1);
   s.joints[2].axis = Eigen::Vector3d(by, 0, 1).normalized();
-  LoopSpec loop;
-  loop.name = "B";
-  loop.kind = LoopKind::revolute;
-  loop.parent = "coupler";
-  loop.child = "rocker";
-  loop.origin_parent = {coupler, 0, 0};
-  loop.origin_child = {rocker, 0, 0};
-  s.loops.push_back(loop);
+  s.gravity = {0, -9.81, 0};
   s.held = {"O"};
   return s;
 }
 Scene four_bar(double tilt) {
-  return tilted(tilt, 0.5, 2, 1.5, 2, 1);
-}
-
-MoveResult moved(const Scene& scene, const std::string& sweep, MoveRequest request = {}) {
-  const Mechanism mechanism(scene);
-  request.sweep = {{sweep, 1}};
-  return move(mechanism, 0, assemble(mechanism, Assembled::rates).start.q, request);
+  return tilted(tilt, {0.5, 2, 1.5, 2}, 1);
 }
 
 double held_by(const Scene& scene, const std::string& actuator) {
@@ -143,7 +120,7 @@ TEST(Contradictions, FourBarsWithATiltedPinGoRound) {
 }
 
 TEST(Contradictions, TiltedParallelogramsCrossWhereTheyAreFlat) {
-  const auto at = [](double tilt) { return moved(tilted(tilt, 1, 2, 1, 2, 1), "O"); };
+  const auto at = [](double tilt) { return moved(tilted(tilt, {1, 2, 1, 2}, 1), "O"); };
   const MoveResult exact = at(0);
   EXPECT_EQ(exact.change_points(), 2);
   for (const double tilt : {1e-10, 1e-8, 1e-7}) {
