@@ -19,6 +19,9 @@
 //               that the first correction is the tangent. The step is too long where the second
 //               correction is not small or the corrections do not shrink; a method with step
 //               control then tries a shorter step.
+// Driven whole  with no independent coordinate no error is estimated. A stage whose rates are not
+//               reached from the step's start by the accelerations at both ends is too far: beyond
+//               a singular pose Newton's method would find the way back, at once.
 // Fails         where no block is regular: a partition cannot pass a singular pose
 // Source        Wehage, Haug, J. Mech. Design 104 (1982); Nikravesh, Computer-Aided Analysis of
 //               Mechanical Systems (1988), with Euler parameters.
@@ -41,6 +44,7 @@ constexpr int most_corrections = 12;
 constexpr double last_correction = 1e-8;  // [rad or lengths]: its square is rounding
 constexpr double off_tangent = 0.3;       // [rad or lengths]: the second correction, at most
 constexpr double worst_growth = 1.5;      // of dependent coordinates over independent ones
+constexpr double least_turn = 1e-6;       // of rates, in their sizes
 constexpr double opened = 1e-6;  // Φ of rows that ought to follow from the others, in units
 
 class Partitioned final : public OdeForm {
@@ -97,6 +101,7 @@ class Partitioned final : public OdeForm {
     e_->place(start.t, q_.data());
     choose(start.t);
     partitions_ = 1;
+    if (freedom() == 0) note_start(start.t);
     std::vector<double> y(static_cast<std::size_t>(size()));
     load(y.data());
     return y;
@@ -104,6 +109,7 @@ class Partitioned final : public OdeForm {
 
   bool rhs(double t, const double* y, double* ydot) override {
     if (!close(t, y) || !accelerate(t)) return false;
+    if (turned_round(t)) return too_long(t);
     if (has_loops()) note_pivots();
     e_->coordinate_rates(q_.data(), u_.data(), qdot_.data());
     ydot[0] = 0;
@@ -124,6 +130,8 @@ class Partitioned final : public OdeForm {
     before_t_ = start_t_;
     start_q_ = q_;
     start_t_ = t;
+    if (freedom() == 0 && !note_start(t)) return false;
+    e_->place(t, q_.data());
     evaluate_jacobian();
     if (at_start_->factor(values_) && growth() <= bound_) return true;
     if (!choose(t))
@@ -282,6 +290,26 @@ class Partitioned final : public OdeForm {
                    "loops are singular near");
   }
 
+  /// Rates and accelerations at the start of a step.
+  bool note_start(double t) {
+    if (!accelerate(t)) return false;
+    start_u_ = u_;
+    start_udot_ = udot_;
+    return true;
+  }
+  /// Whether u_ is not where the accelerations lead from the step's start, by half its size.
+  bool turned_round(double t) const {
+    if (freedom() > 0 || start_u_.size() == 0 || !(t > start_t_)) return false;
+    double off = 0, size = 0;
+    for (Eigen::Index i = 0; i < u_.size(); ++i) {
+      const double led = start_u_[i] + (t - start_t_) * (start_udot_[i] + udot_[i]) / 2,
+                   unit = sizes_.u[static_cast<std::size_t>(i)];
+      off = std::max(off, std::abs(u_[i] - led) / unit);
+      size = std::max({size, std::abs(u_[i]) / unit, std::abs(start_u_[i]) / unit});
+    }
+    return off > std::max(0.5 * size, least_turn);
+  }
+
   bool accelerate(double t) {
     if (!rub(t, q_.data(), u_.data())) return false;
     if (!has_loops())
@@ -303,6 +331,7 @@ class Partitioned final : public OdeForm {
   long partitions_ = 0;
   Eigen::VectorXd start_q_, before_q_;  ///< at the step's start, and at the start of the one before
   double start_t_ = 0, before_t_ = 0;   ///< their times [s]
+  Eigen::VectorXd start_u_, start_udot_;  ///< there, where nothing is independent
   Eigen::VectorXd q_, u_, qdot_, udot_;
   Eigen::VectorXd phi_, rate_, correction_q_, correction_u_;
   Eigen::VectorXd unit_;  ///< of phi_

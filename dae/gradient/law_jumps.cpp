@@ -41,6 +41,14 @@ bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Ex
     moves[i] = of(in.a) || of(in.b) || of(in.c) || (in.operation == O::spline && points_move);
     if (in.operation == O::choice || in.operation == O::sign || in.operation == O::floor)
       jumps |= of(in.a);
+    // x / |x| and its like; where what divides stays away from zero, steps show no jump.
+    if (in.operation == O::divide) jumps |= of(in.b);
+    if (in.operation == O::whole_power && in.number < 0) jumps |= of(in.a);
+    if (in.operation == O::power) {
+      const formula::Instruction& exponent = tape[static_cast<std::size_t>(in.b)];
+      if (exponent.operation != O::number || !(exponent.number > 0)) jumps |= moves[i] != 0;
+    }
+    if (in.operation == O::atan2) jumps |= moves[i] != 0;
     if (rates && (in.operation == O::abs || in.operation == O::min || in.operation == O::max ||
                   in.operation == O::spline))
       jumps |= moves[i] != 0;

@@ -19,8 +19,9 @@ namespace momenta {
 
 class LawJumps {
  public:
-  /// Of forces and drives by formulas with if(…), sign or floor of the motion, or of numbers that
-  /// differ in one of the `others`, scenes of other θ. The mechanism must outlive it.
+  /// Of forces and drives by formulas with if(…), sign, floor, atan2 or a divisor of the motion, or
+  /// of numbers that differ in one of the `others`, scenes of other θ. The mechanism must outlive
+  /// it.
   LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others, bool of_accelerations);
   bool any() const { return !laws_.empty(); }
   bool takes_rates() const { return values_ && values_->takes_rates(); }

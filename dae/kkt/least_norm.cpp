@@ -198,7 +198,7 @@ bool clearly_independent(const MatrixXd& a) {
 
 }  // namespace
 
-LoopRank LeastNorm::judge(const std::vector<double>& values, Judged judged) {
+LoopRank LeastNorm::judge(const std::vector<double>& values, Judged judged, double least) {
   LoopRank rows;
   if (!all_finite(values)) return rows;
   if (dense_) {
@@ -207,7 +207,7 @@ LoopRank LeastNorm::judge(const std::vector<double>& values, Judged judged) {
       rows.rank = rows_;
       return rows;
     }
-    RankAndIdle all = rank_and_idle(a);
+    RankAndIdle all = rank_and_idle(a, 0, -1, least);
     rows.rank = all.rank;
     rows.kept = all.kept;
     rows.dropped = all.dropped;

@@ -32,8 +32,10 @@ class LeastNorm {
   /// A x
   Eigen::VectorXd product(const std::vector<double>& values, const Eigen::VectorXd& x) const;
 
-  /// Which rows of A follow from the others, and how many do not.
-  LoopRank judge(const std::vector<double>& values, Judged judged = Judged::singular_values);
+  /// Which rows of A follow from the others, and how many do not; `least`: as of loop_rank(), of
+  /// dense ones.
+  LoopRank judge(const std::vector<double>& values, Judged judged = Judged::singular_values,
+                 double least = 0);
   /// How many there were, sparse ones.
   long factorizations() const;
   bool is_dense() const { return sparse_ == nullptr; }

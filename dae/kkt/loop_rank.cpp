@@ -37,7 +37,7 @@ ScaledJacobian scaled_jacobian(const Mechanism& mechanism, Evaluation<double>& e
   return scaled;
 }
 
-RankAndIdle rank_and_idle(const MatrixXd& a, double largest, int rank) {
+RankAndIdle rank_and_idle(const MatrixXd& a, double largest, int rank, double least) {
   RankAndIdle d;
   if (a.rows() == 0) return d;
   if (a.cols() == 0) {
@@ -48,7 +48,8 @@ RankAndIdle rank_and_idle(const MatrixXd& a, double largest, int rank) {
   d.singular_values = svd.values;
   const VectorXd& s = d.singular_values;
   if (largest == 0) largest = s[0];
-  while (d.rank < s.size() && s[d.rank] > rank_tolerance * largest) ++d.rank;
+  const double counts = std::max(rank_tolerance, least) * largest;
+  while (d.rank < s.size() && s[d.rank] > counts) ++d.rank;
   if (rank >= 0) d.rank = rank;
   if (d.rank > 0) d.kept = s[d.rank - 1];
   if (d.rank < s.size()) d.dropped = s[d.rank];
@@ -84,10 +85,11 @@ std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
   return own;
 }
 
-LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e, Judged judged) {
+LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e, Judged judged,
+                   double least) {
   if (mechanism.m() == 0) return {};
   LeastNorm rows(mechanism.constraint_pattern(), mechanism.m(), mechanism.nv());
-  return rows.judge(scaled_entries(mechanism, e, LoopUnits(mechanism)), judged);
+  return rows.judge(scaled_entries(mechanism, e, LoopUnits(mechanism)), judged, least);
 }
 
 MatrixXd idle_forces(const Mechanism& mechanism, double t, const VectorXd& q) {

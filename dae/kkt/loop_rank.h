@@ -52,8 +52,9 @@ struct RankAndIdle {
   Eigen::MatrixXd left;             ///< null space of Aᵀ, columns
 };
 /// `largest`: singular value that others are compared with; 0: the largest of `a` itself. `rank`:
-/// where it is known. O((m + nv)³)
-RankAndIdle rank_and_idle(const Eigen::MatrixXd& a, double largest = 0, int rank = -1);
+/// where it is known. `least`: as of loop_rank(). O((m + nv)³)
+RankAndIdle rank_and_idle(const Eigen::MatrixXd& a, double largest = 0, int rank = -1,
+                          double least = 0);
 
 /// The reduced basis of the columns of `left`: each has a row of its own where it is 1 and all
 /// others are 0. Rows of `first` are taken before others, later ones before earlier. Returns these
@@ -73,9 +74,10 @@ enum class Judged { singular_values, dependence };
 /// The verdict where `e` is placed: LeastNorm::judge() of A. Up to 10⁵ numbers of A by singular
 /// values; of more, and where dependence alone is asked for and is far away, by the pivots of a QR
 /// factorisation of Aᵀ, which far from the border tell the same. Where a number of A is not finite
-/// nothing is known: rank 0, no dependent rows.
+/// nothing is known: rank 0, no dependent rows. `least`: a part of the largest singular value that
+/// others have to exceed, where it is more than rank_tolerance.
 LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e,
-                   Judged judged = Judged::singular_values);
+                   Judged judged = Judged::singular_values, double least = 0);
 
 /// Forces of the loops (m × n, independent columns) that move nothing at (t, q): Φ_qᵀν = 0. None
 /// where the equations are independent. O((m + nv)³)

@@ -95,6 +95,7 @@ class Searcher {
     found.lambda = here.lambda;
     found.left = here.left;
     found.potential = here.potential;
+    found.pivot = poses_.pivot();
     found.last_step = step_;
     found.moved = q.size() > 0 ? (here.q - q).cwiseAbs().maxCoeff() : 0;
     return found;

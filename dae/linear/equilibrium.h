@@ -38,6 +38,7 @@ struct Equilibrium {
   double moved = 0;      ///< largest change of a coordinate since the start [rad or m]
   double last_step = 0;  ///< [rad or m]
   double potential = 0;  ///< V [J]
+  double pivot = 0;      ///< singular values of Φ_q that count are above it (contradiction.h)
 };
 
 /// From a consistent start, whose rates do not matter. `settle` goes on from a saddle that it came

@@ -36,6 +36,8 @@ class PoseMotion {
   Eigen::VectorXd momentum(const Eigen::VectorXd& y);
 
   Evaluation<double>& evaluation() { return *e_; }
+  /// From which part of the largest on singular values of Φ_q count, by the first pose.
+  double pivot() const { return contradiction_ ? contradiction_->pivot : 0; }
   /// Place in u of the joint at which let_go() failed.
   int singular_joint() const { return solver_ ? solver_->singular_joint() : e_->singular_joint(); }
 

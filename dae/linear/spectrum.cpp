@@ -151,7 +151,7 @@ Spectrum spectrum(const Mechanism& mechanism, const Equilibrium& at, int count, 
   if (mechanism.m() > 0) {
     const auto e = mechanism.evaluation<double>();
     e->place(at.t, at.q.data());
-    LoopRank loops = loop_rank(mechanism, *e);
+    LoopRank loops = loop_rank(mechanism, *e, Judged::singular_values, at.pivot);
     found.rank = loops.rank;
     found.dependent_rows = std::move(loops.dependent);
   }

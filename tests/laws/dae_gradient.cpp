@@ -606,7 +606,8 @@ TEST(Gradient, RefusesJumpsThatTheMotionPasses) {
            "velocity = 1\nstiffness = 9\n[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"" +
            law + "\"\n";
   };
-  for (const char* law : {"-F*sign(u)", "if(q > 0.2, F, -F)", "F*floor(5*X.q)"})
+  for (const char* law : {"-F*sign(u)", "if(q > 0.2, F, -F)", "F*floor(5*X.q)", "-F*u/abs(u)",
+                          "-F*u*(u^2)^(-0.5)", "F*atan2(u, -q)"})
     for (const char* form : {"momentum", "acceleration"}) try {
         gradient(of_text(text(law)), adaptive("X.q", {"F"}, form, 1, "dop853", 1e-8));
         ADD_FAILURE() << law;

@@ -203,6 +203,29 @@ TEST(InfeasibleDrives, ChangePointsArePassed) {
   EXPECT_TRUE(reach.determined);
 }
 
+/// A drive that comes to rest where rocker and coupler are stretched goes on, and they through the
+/// line; to turn round there is another motion, which takes an impulse.
+TEST(InfeasibleDrives, NoFormTurnsRoundWhereADriveTouchesADeadPoint) {
+  FourBar x;
+  const double widest = 1.2;
+  x.from = 0.4;
+  x.law.kind = "harmonic";
+  x.law.offset = x.from;
+  x.law.frequency = 2;
+  const double d = std::sqrt(5 - 4 * std::cos(widest));
+  x.c = d - x.b;
+  for (const double part : {1.0, 0.9}) {
+    x.law.amplitude = part * (widest - x.from);
+    const Mechanism mechanism(scene_of(x));
+    for (const char* form : {"partitioned", "projected", "momentum"}) {
+      const RunResult r = run(mechanism, form, 1.5);
+      if (part < 1) EXPECT_EQ(r.status, "done") << form << r.reason;
+      if (r.status != "done") continue;
+      EXPECT_LT(r.energy_error_max, 1e-3) << form << part;
+    }
+  }
+}
+
 /// Three rods of 1 m between the ground and a slider that leaves at 1 m/s: stretched at t = 2 s,
 /// with a freedom that forces move until then.
 TEST(InfeasibleDrives, LoopsWithAFreedomLeftAreStretched) {
