@@ -85,8 +85,7 @@ std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
   return own;
 }
 
-LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e, Judged judged,
-                   double least) {
+LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e, Judged judged, double least) {
   if (mechanism.m() == 0) return {};
   LeastNorm rows(mechanism.constraint_pattern(), mechanism.m(), mechanism.nv());
   return rows.judge(scaled_entries(mechanism, e, LoopUnits(mechanism)), judged, least);
