@@ -148,7 +148,7 @@ class EnergyMomentum {
     cyclic_ = std::move(cyclic);
     const auto count = static_cast<Eigen::Index>(cyclic_.size());
     columns_ = Eigen::MatrixXd::Zero(push_.size(), count);
-    block_ = Eigen::LDLT<Eigen::MatrixXd>(count);
+    block_.compute(Eigen::MatrixXd::Identity(count, count));  // takes the memory it needs
     among_ = Eigen::MatrixXd::Zero(count, count);
     of_cyclic_ = VectorXd::Zero(count);
   }
