@@ -4,7 +4,7 @@
 # including script sets CONFIGURE, that build is made first.
 #
 #   cmake -D BUILD=<build folder> -D WORK=<folder to use> -D SOURCE=<top of the project>
-#         [-D FLAGS=<compiler flags>] -P run.cmake
+#         -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 function(step)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${SOURCE} COMMAND_ERROR_IS_FATAL ANY)
@@ -59,7 +59,7 @@ endforeach()
 include_public_headers()
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
-     -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS_DEBUG=-O0 -D CMAKE_CXX_FLAGS=${FLAGS} -D PROGRAMS=${WORK}/from_documents)
+     -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS_DEBUG=-O0 -D PROGRAMS=${WORK}/from_documents)
 step(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
 file(GLOB programs ${WORK}/build/programs/*)
 if(NOT programs)
