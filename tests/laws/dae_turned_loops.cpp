@@ -241,7 +241,7 @@ TEST(TurnedLoops, TheDeltaRobotIsLedBackAndRuns) {
   request.settings.form = "momentum-index2";
   request.settings.integrator = "ida";
   request.settings.end_time = 0.5;
-  request.max_cpu_seconds = 10;
+  request.max_cpu_seconds = 60;
   const RunResult run = run_form(mechanism, a.start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
 }
