@@ -31,8 +31,10 @@
 namespace momenta {
 
 struct HalfExplicitState {
-  explicit HalfExplicitState(std::size_t size) : y(size), ydot(size) {}
-  explicit_rk::AlignedArray y, ydot;  ///< (y, z) and its rate; that of z is left at zero
+  explicit HalfExplicitState(std::size_t size)
+      : y(explicit_rk::padded(size)), ydot(explicit_rk::padded(size)) {}
+  explicit_rk::AlignedArray y, ydot;  ///< (y, z) and its rate; that of z is left at zero. Padded:
+                                      ///< stages are summed over whole cache lines
 };
 
 /// `Stages`, of one step:
