@@ -158,7 +158,7 @@ RunResult run(const Mechanism& mechanism, const std::string& form, double end,
   request.settings.samples = 50;
   request.settings.step = 1e-3;
   request.settings.project = project;
-  request.max_cpu_seconds = 20;
+  request.max_cpu_seconds = 200;
   return run_form(mechanism, start_of(mechanism), request);
 }
 
