@@ -130,9 +130,8 @@ class Partitioned final : public OdeForm {
     before_t_ = start_t_;
     start_q_ = q_;
     start_t_ = t;
-    if (freedom() == 0 && !note_start(t)) return false;
-    e_->place(t, q_.data());
     evaluate_jacobian();
+    if (freedom() == 0 && !note_start(t)) return false;
     if (at_start_->factor(values_) && growth() <= bound_) return true;
     if (!choose(t))
       return fail_at(t,
@@ -290,8 +289,9 @@ class Partitioned final : public OdeForm {
                    "loops are singular near");
   }
 
-  /// Rates and accelerations at the start of a step.
+  /// Rates and accelerations at the start of a step; none where there are no accelerations.
   bool note_start(double t) {
+    start_u_.resize(0);
     if (!accelerate(t)) return false;
     start_u_ = u_;
     start_udot_ = udot_;

@@ -41,7 +41,8 @@ bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Ex
     moves[i] = of(in.a) || of(in.b) || of(in.c) || (in.operation == O::spline && points_move);
     if (in.operation == O::choice || in.operation == O::sign || in.operation == O::floor)
       jumps |= of(in.a);
-    // x / |x| and its like; where what divides stays away from zero, steps show no jump.
+    // x / |x|, x (x²)^(−1/2) and the like jump where they divide by zero; where they never do,
+    // in_step() finds none.
     if (in.operation == O::divide) jumps |= of(in.b);
     if (in.operation == O::whole_power && in.number < 0) jumps |= of(in.a);
     if (in.operation == O::power) {

@@ -615,7 +615,8 @@ TEST(Gradient, RefusesJumpsThatTheMotionPasses) {
         EXPECT_NE(std::string(e.what()).find(" s the force by '"), std::string::npos) << e.what();
         EXPECT_NE(std::string(e.what()).find(" jumps from "), std::string::npos) << e.what();
       }
-  for (const char* law : {"if(q > 0.2, -F*(q - 0.2), 0)", "-F*abs(q)", "if(t > 0.5, F, 0)"})
+  for (const char* law : {"if(q > 0.2, -F*(q - 0.2), 0)", "-F*abs(q)", "if(t > 0.5, F, 0)",
+                          "-F*u/(1e-3 + u^2)", "-F*(1 + q)^(-0.5)", "F*atan2(u, 2 + q)"})
     EXPECT_NO_THROW(
         gradient(of_text(text(law)), adaptive("X.q", {"F"}, "momentum", 1, "dop853", 1e-8)))
         << law;

@@ -205,7 +205,7 @@ TEST(InfeasibleDrives, ChangePointsArePassed) {
 
 /// A drive that comes to rest where rocker and coupler are stretched goes on, and they through the
 /// line; to turn round there is another motion, which takes an impulse.
-TEST(InfeasibleDrives, NoFormTurnsRoundWhereADriveTouchesADeadPoint) {
+TEST(InfeasibleDrives, NoRunTurnsRoundWhereADriveTouchesADeadPoint) {
   FourBar x;
   const double widest = 1.2;
   x.from = 0.4;
