@@ -106,8 +106,11 @@ void KeptRun::note(TrajectoryFile& trajectory, const std::vector<double>& row,
 }
 
 void KeptRun::remove() const {
+  if (o_.out.empty()) return;
   std::error_code ignored;
-  if (!o_.out.empty()) std::filesystem::remove(file_, ignored);
+  std::filesystem::remove(file_, ignored);
+  // Of a run that was killed as it wrote one, where none is written any more.
+  std::filesystem::remove(file_.string() + ".part", ignored);
 }
 
 }  // namespace momenta::program

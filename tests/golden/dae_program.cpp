@@ -217,7 +217,7 @@ TEST_F(Program, StoppedRunSaysWhyAndKeepsItsSamples) {
   const fs::path results = folder_ / "results";
   const Outcome o =
       call("run '" + example("four_bar") +
-           "' --integrator rk4 --step 1e-6 --end 100 --samples 100000 --cpu-limit 0.2 --out '" +
+           "' --integrator rk4 --step 1e-6 --end 100 --samples 100000 --cpu-limit 2 --out '" +
            results.string() + "'");
   EXPECT_EQ(o.status, 1);
   EXPECT_EQ(o.err.rfind("momenta: the run stopped: ", 0), 0u) << o.err;
