@@ -2,6 +2,7 @@
 #include <momenta/core/expression/tape.h>
 
 #include <optional>
+#include <unordered_map>
 
 namespace momenta::formula {
 namespace {
@@ -148,15 +149,17 @@ class Maker {
       s.act = code(power_acts + s.n);
     if (in.operation == Operation::sin || in.operation == Operation::cos) {
       const bool sine = in.operation == Operation::sin;
-      for (Step& known : steps_.all)
-        if (known.a == s.a &&
-            known.act == code(static_cast<int>(sine ? Operation::cos : Operation::sin))) {
+      const auto [at, first] = turned_.try_emplace(s.a, steps_.all.size());
+      if (!first) {
+        Step& known = steps_.all[at->second];
+        if (known.act == code(static_cast<int>(sine ? Operation::cos : Operation::sin))) {
           // The first of the two makes both; known.b is where the cosine goes.
           known.b = sine ? known.to : s.to;
           if (sine) known.to = s.to;
           known.act = code(sine_and_cosine);
           return;
         }
+      }
     }
     steps_.all.push_back(s);
   }
@@ -166,6 +169,7 @@ class Maker {
   std::vector<int> uses_;
   std::vector<char> absorbed_;
   std::vector<int> place_;
+  std::unordered_map<int, std::size_t> turned_;  ///< a place's first sine or cosine: its step
   Steps steps_;
 };
 

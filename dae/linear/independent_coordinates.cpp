@@ -22,8 +22,9 @@ std::vector<int> without(const std::vector<int>& all, const std::vector<int>& so
 /// Rows of a that stay when those that follow from the others are left out, nonholonomic ones
 /// first; `idle`: forces of them that move nothing.
 std::vector<int> basis_of_rows(const MatrixXd& a, const std::vector<int>& rows,
-                               const std::vector<bool>& nonholonomic, RankAndIdle& found) {
-  found = rank_and_idle(a(rows, Eigen::all));
+                               const std::vector<bool>& nonholonomic, double pivot,
+                               RankAndIdle& found) {
+  found = rank_and_idle(a(rows, Eigen::all), 0, -1, pivot);
   std::vector<int> first;
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (nonholonomic[static_cast<std::size_t>(rows[i])]) first.push_back(static_cast<int>(i));
@@ -102,7 +103,7 @@ void expect_determined(const OperatingPoint& at, const MatrixXd& block,
 }  // namespace
 
 IndependentCoordinates independent_coordinates(const OperatingPoint& at,
-                                               const std::vector<int>& named) {
+                                               const std::vector<int>& named, double pivot) {
   const Mechanism& mechanism = *at.freed;
   IndependentCoordinates c;
   std::vector<int> all, of_positions;
@@ -122,12 +123,12 @@ IndependentCoordinates independent_coordinates(const OperatingPoint& at,
     a(Eigen::all, at.free) = whole(Eigen::all, at.free);
     RankAndIdle found;
     if (!of_positions.empty())
-      c.position_rows = basis_of_rows(a, of_positions, nonholonomic, found);
+      c.position_rows = basis_of_rows(a, of_positions, nonholonomic, pivot, found);
     c.rows = c.position_rows;
     if (of_positions.size() < all.size()) {
       std::vector<int> more = c.position_rows;
       for (const int i : without(all, of_positions)) more.push_back(i);
-      c.rows = basis_of_rows(a, more, nonholonomic, found);
+      c.rows = basis_of_rows(a, more, nonholonomic, pivot, found);
     }
     found = rank_and_idle(a, 0, static_cast<int>(c.rows.size()));
     expect_followed(at, whole, found.left);

@@ -30,11 +30,11 @@ struct IndependentCoordinates {
   double kept = 0;                       ///< smallest singular value that counts over the largest
 };
 
-/// `named`: places in u for free_positions; empty: chosen.
+/// `named`: places in u for free_positions; empty: chosen. `pivot`: as of LinearRequest.
 /// @throws SceneError where drives ask what the loops cannot follow, or the named ones do not
 /// determine the pose. O((nv + m)³)
 IndependentCoordinates independent_coordinates(const OperatingPoint& at,
-                                               const std::vector<int>& named);
+                                               const std::vector<int>& named, double pivot = 0);
 
 /// Refuses a pose at which Φ_q has less rank than nearby. @throws SceneError. O((nv + m)³)
 void expect_regular(const Mechanism& mechanism, const Start& at);

@@ -273,7 +273,7 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
   expect_regular(mechanism, start);
   OperatingPoint point = operating_point(mechanism, start);
   const std::vector<int> named = independent_places(point, request.independent);
-  IndependentCoordinates chosen = independent_coordinates(point, named);
+  IndependentCoordinates chosen = independent_coordinates(point, named, request.pivot);
   LinearModel result;
   result.kind = request.kind;
   result.scene = mechanism.scene().name;

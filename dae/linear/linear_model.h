@@ -52,6 +52,7 @@ struct LinearRequest {
   std::vector<std::string> outputs;
   /// Coordinates taken for δ_I, "O.q"; empty: chosen. Those of rates are the same, or part of them.
   std::vector<std::string> independent;
+  double pivot = 0;  ///< as an Equilibrium has it
 };
 
 /// A linear model and the state it is of.

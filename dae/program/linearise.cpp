@@ -26,7 +26,9 @@ void expect_one_state(const LineariseOptions& l) {
         "--at, --time, --after and --equilibrium name a state each; expected one of them");
 }
 
-Start state_of(const Options& o, const LineariseOptions& l, const Mechanism& mechanism) {
+/// `pivot`: that of an equilibrium.
+Start state_of(const Options& o, const LineariseOptions& l, const Mechanism& mechanism,
+               double& pivot) {
   if (!l.state.empty()) return start_of(l.state, mechanism);
   if (l.time) {
     if (!std::isfinite(*l.time))
@@ -42,6 +44,7 @@ Start state_of(const Options& o, const LineariseOptions& l, const Mechanism& mec
   if (l.equilibrium.empty()) return start;
   const Equilibrium rest = find_equilibrium(
       mechanism, start, l.equilibrium == "nearest" ? Search::nearest : Search::settle);
+  pivot = rest.pivot;
   Start at;
   at.t = rest.t;
   at.q = rest.q;
@@ -64,7 +67,8 @@ int linearise_verb(const Options& o, const LineariseOptions& l) {
   request.inputs = names_in(l.inputs);
   request.outputs = names_in(l.outputs);
   request.independent = names_in(l.independent);
-  const LinearModel model = linear_model(mechanism, state_of(o, l, mechanism), request);
+  const Start state = state_of(o, l, mechanism, request.pivot);
+  const LinearModel model = linear_model(mechanism, state, request);
   const std::string json = linear_json(model);
   if (!o.out.empty() && !write_results({{o.out / "linear.json", json},
                                         {o.out / "linear.m", linear_octave(model)},

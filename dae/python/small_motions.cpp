@@ -103,6 +103,7 @@ py::dict linearise(const Bench& b, const std::string& kind, double t,
       at.t = rest.t;
       at.q = rest.q;
       at.u = Vector::Zero(held.nv());
+      request.pivot = rest.pivot;
       model = linear_model(held, at, request);
     } else if (q || u) {
       const Tree& tree = b.mechanism->tree();

@@ -97,6 +97,8 @@ bool RunMonitor::sample(double t, const double* y, const double* ydot) {
     else if (!written_ && by_mass_alone &&
              !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
       trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
+    else if (const OdeSystem* ode = form_->ode(); ode && !ode->failure().empty())
+      trouble_ = ode->failure();
     return false;
   }
   const Drift position = position_drift(t, now_.q);

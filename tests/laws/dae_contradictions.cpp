@@ -8,6 +8,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/effort/effort.h>
 #include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/linear/linear_model.h>
 #include <momenta/dae/study/modes_study.h>
 
 #include <cmath>
@@ -139,6 +140,17 @@ TEST(Contradictions, EffortsAndModesAreThoseOfNumbersThatAgree) {
     ASSERT_EQ(found.spectrum.modes.size(), right.spectrum.modes.size());
     EXPECT_LT((found.equilibrium.q - right.equilibrium.q).cwiseAbs().maxCoeff(), within);
     EXPECT_LT(std::abs(found.spectrum.modes[0].s - right.spectrum.modes[0].s), 10 * within);
+    // The linear model has the same pair, alone.
+    const Mechanism mechanism(scene);
+    Start at;
+    at.t = found.equilibrium.t;
+    at.q = found.equilibrium.q;
+    at.u = VectorXd::Zero(mechanism.nv());
+    LinearRequest request;
+    request.pivot = found.equilibrium.pivot;
+    const LinearModel model = linear_model(mechanism, at, request);
+    ASSERT_EQ(model.poles.size(), 2);
+    EXPECT_NEAR(std::abs(model.poles[0].imag()), std::abs(found.spectrum.modes[0].s.imag()), 1e-8);
   };
   for (const double tilt : {1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7, 5e-7})
     expect_same(four_bar(tilt), four_bar(0), "O", 100 * tilt);
