@@ -180,7 +180,7 @@ TEST_F(Results, OfAStoppedRunKeepItsSamples) {
   const std::string out = (folder_ / "stopped").string();
   const Outcome o =
       call("run '" + example("n_four_bar") +
-           "' --quiet --data hdf5 --end 1000 --samples 100000 --cpu-limit 0.3 --out '" + out + "'");
+           "' --quiet --data hdf5 --end 1000 --samples 100000 --cpu-limit 2 --out '" + out + "'");
   EXPECT_EQ(o.status, 1) << o.err;
   const hid_t file = H5Fopen((out + "/run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   ASSERT_GE(file, 0);

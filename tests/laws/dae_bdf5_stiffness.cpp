@@ -73,7 +73,7 @@ JointSpec& rocker_of(Scene& scene) {
 
 RunResult run(const Scene& scene, const std::string& form, const std::string& integrator,
               const std::string& gauge, double tolerance, double end) {
-  return equations::run_of(Mechanism(scene), form, integrator, gauge, tolerance, end, 30);
+  return equations::run_of(Mechanism(scene), form, integrator, gauge, tolerance, end, 300);
 }
 
 // A damper of 10⁸ N m s/rad stops the mechanism within 10⁻⁸ s: the transient is of the size of the

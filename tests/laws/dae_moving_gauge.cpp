@@ -286,7 +286,7 @@ TEST(DaeForms, SoftenedRowsHoldAtTheStart) {
   request.settings.integrator = "bdf5";
   request.settings.rtol = request.settings.atol = 1e-10;
   request.settings.end_time = 0.01;
-  request.max_cpu_seconds = 20;
+  request.max_cpu_seconds = 200;
   const RunResult run = run_form(mechanism, start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
 }
