@@ -194,8 +194,10 @@ TEST_F(SweepProgram, ThreadsProcessesAndKillsChangeNothing) {
   EXPECT_EQ(json.at("status").at("done"), 16);
 
   if (!MOMENTA_WITH_MPI || std::system("command -v mpirun >/dev/null") != 0) return;
-  const Outcome ranks =
-      call(sweep("ranks"), "/dev/null", "mpirun --allow-run-as-root --oversubscribe -n 3 ");
+  // Under sanitizers: Open MPI leaves what it allocated to the system.
+  const std::string three =
+      "ASAN_OPTIONS=detect_leaks=0 timeout 600 mpirun --allow-run-as-root --oversubscribe -n 3 ";
+  const Outcome ranks = call(sweep("ranks"), "/dev/null", three);
   EXPECT_EQ(ranks.status, 0) << ranks.err;
   EXPECT_EQ(csv("ranks"), expected);
   const auto shared = nlohmann::json::parse(text_of(folder_ / "ranks" / "sweep.json"));
@@ -203,8 +205,7 @@ TEST_F(SweepProgram, ThreadsProcessesAndKillsChangeNothing) {
   // What rank 0 alone can tell is told, and nobody waits for it.
   fs::create_directories(folder_ / "foreign");
   std::ofstream(folder_ / "foreign" / "study.csv") << "another verb's";
-  const Outcome refused = call(sweep("foreign"), "/dev/null",
-                               "timeout 60 mpirun --allow-run-as-root --oversubscribe -n 3 ");
+  const Outcome refused = call(sweep("foreign"), "/dev/null", three);
   EXPECT_EQ(refused.status, 2) << refused.err;
   EXPECT_NE(refused.err.find("study.csv of another verb"), std::string::npos) << refused.err;
 }

@@ -173,7 +173,7 @@ TEST_P(Repeats, TakeTheStepsOfTheMeasuredRun) {
         if (integrator(method).step == Integrator::Step::fixed) request.settings.step = 2e-3;
         request.settings.end_time = 0.7;
         request.settings.samples = 70;
-        request.max_cpu_seconds = 0.5;
+        request.max_cpu_seconds = 5;
         RunResult run;
         try {
           run = run_form(mechanism, start, request);
