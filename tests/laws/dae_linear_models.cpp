@@ -54,6 +54,7 @@ MatrixXd joined(const LinearModel& m) {
 }
 
 MatrixXcd response(const LinearModel& m, Complex s) {
+  if (m.A.rows() == 0) return m.D.cast<Complex>();  // drives hold all there is
   const MatrixXcd inside = s * m.E.cast<Complex>() - m.A.cast<Complex>();
   return m.C.cast<Complex>() * inside.fullPivLu().solve(m.B.cast<Complex>()) + m.D.cast<Complex>();
 }
