@@ -150,15 +150,13 @@ class Maker {
     if (in.operation == Operation::sin || in.operation == Operation::cos) {
       const bool sine = in.operation == Operation::sin;
       const auto [at, first] = turned_.try_emplace(s.a, steps_.all.size());
-      if (!first) {
-        Step& known = steps_.all[at->second];
-        if (known.act == code(static_cast<int>(sine ? Operation::cos : Operation::sin))) {
-          // The first of the two makes both; known.b is where the cosine goes.
-          known.b = sine ? known.to : s.to;
-          if (sine) known.to = s.to;
-          known.act = code(sine_and_cosine);
-          return;
-        }
+      Step& known = first ? s : steps_.all[at->second];
+      if (known.act == code(static_cast<int>(sine ? Operation::cos : Operation::sin))) {
+        // The first of the two makes both; known.b is where the cosine goes.
+        known.b = sine ? known.to : s.to;
+        if (sine) known.to = s.to;
+        known.act = code(sine_and_cosine);
+        return;
       }
     }
     steps_.all.push_back(s);

@@ -136,7 +136,8 @@ bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out)
   // The correction belongs to the method, so it is applied to interpolated states too.
   if (has_loops() && options_.project && !correct_position(t, out.q.data())) return false;
   if (!has_loops()) {
-    if (!e_->open_momentum_rates(t, q, p, u_.data(), work_.data())) return false;
+    if (!e_->open_momentum_rates(t, q, p, u_.data(), work_.data()))
+      return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
   } else if (!solve(t, q, p, nullptr)) {
     return false;
   }

@@ -30,7 +30,7 @@ struct IndependentCoordinates {
   double kept = 0;                       ///< smallest singular value that counts over the largest
 };
 
-/// `named`: places in u for free_positions; empty: chosen. `pivot`: as of LinearRequest.
+/// `named`: places in u for free_positions; empty: chosen. `pivot`: as of an Equilibrium.
 /// @throws SceneError where drives ask what the loops cannot follow, or the named ones do not
 /// determine the pose. O((nv + m)³)
 IndependentCoordinates independent_coordinates(const OperatingPoint& at,

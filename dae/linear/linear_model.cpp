@@ -257,10 +257,9 @@ class Eliminated {
   StateLinearisation l_;
 };
 
-}  // namespace
-
-LinearModel linear_model(const Mechanism& mechanism, const Start& start,
-                         const LinearRequest& request) {
+/// Singular values of Φ_q that count are above `pivot`; 0: as independent_coordinates() judges.
+LinearModel model_at(const Mechanism& mechanism, const Start& start, const LinearRequest& request,
+                     double pivot) {
   refuse_bearings(mechanism.scene(), "linearisation");
   const int unknowns = mechanism.nv() + mechanism.m();
   if (unknowns > most_of_linear_model)
@@ -273,7 +272,7 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
   expect_regular(mechanism, start);
   OperatingPoint point = operating_point(mechanism, start);
   const std::vector<int> named = independent_places(point, request.independent);
-  IndependentCoordinates chosen = independent_coordinates(point, named, request.pivot);
+  IndependentCoordinates chosen = independent_coordinates(point, named, pivot);
   LinearModel result;
   result.kind = request.kind;
   result.scene = mechanism.scene().name;
@@ -324,6 +323,22 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
   result.u = start.u;
   result.udot = model.udot()(columns.free);
   return result;
+}
+
+}  // namespace
+
+LinearModel linear_model(const Mechanism& mechanism, const Start& at,
+                         const LinearRequest& request) {
+  return model_at(mechanism, at, request, 0);
+}
+
+LinearModel linear_model(const Mechanism& mechanism, const Equilibrium& at,
+                         const LinearRequest& request) {
+  Start rest;
+  rest.t = at.t;
+  rest.q = at.q;
+  rest.u = VectorXd::Zero(mechanism.nv());
+  return model_at(mechanism, rest, request, at.pivot);
 }
 
 }  // namespace momenta

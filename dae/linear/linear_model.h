@@ -32,6 +32,7 @@
 // docs/theory/linear-models.md.
 
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/linear/equilibrium.h>
 
 #include <Eigen/Core>
 #include <complex>
@@ -52,7 +53,6 @@ struct LinearRequest {
   std::vector<std::string> outputs;
   /// Coordinates taken for δ_I, "O.q"; empty: chosen. Those of rates are the same, or part of them.
   std::vector<std::string> independent;
-  double pivot = 0;  ///< as an Equilibrium has it
 };
 
 /// A linear model and the state it is of.
@@ -85,6 +85,10 @@ inline constexpr int most_of_linear_model = 600;  ///< nv + m
 /// equation), where something moves without inertia, a name is not known, the independent
 /// coordinates do not determine the pose, or numbers are not finite
 LinearModel linear_model(const Mechanism& mechanism, const Start& at,
+                         const LinearRequest& request = {});
+
+/// About an equilibrium, at rest; which rows of Φ_q count is the equilibrium's own.
+LinearModel linear_model(const Mechanism& mechanism, const Equilibrium& at,
                          const LinearRequest& request = {});
 
 }  // namespace momenta

@@ -26,9 +26,7 @@ void expect_one_state(const LineariseOptions& l) {
         "--at, --time, --after and --equilibrium name a state each; expected one of them");
 }
 
-/// `pivot`: that of an equilibrium.
-Start state_of(const Options& o, const LineariseOptions& l, const Mechanism& mechanism,
-               double& pivot) {
+Start state_of(const Options& o, const LineariseOptions& l, const Mechanism& mechanism) {
   if (!l.state.empty()) return start_of(l.state, mechanism);
   if (l.time) {
     if (!std::isfinite(*l.time))
@@ -40,16 +38,15 @@ Start state_of(const Options& o, const LineariseOptions& l, const Mechanism& mec
     settings.end_time = *l.after;
     return state_after(mechanism, assemble(mechanism).start, settings, o.cpu_limit.value_or(60));
   }
-  const Start start = assemble(mechanism).start;
-  if (l.equilibrium.empty()) return start;
-  const Equilibrium rest = find_equilibrium(
-      mechanism, start, l.equilibrium == "nearest" ? Search::nearest : Search::settle);
-  pivot = rest.pivot;
-  Start at;
-  at.t = rest.t;
-  at.q = rest.q;
-  at.u = Eigen::VectorXd::Zero(mechanism.nv());
-  return at;
+  return assemble(mechanism).start;
+}
+
+LinearModel model_of(const Options& o, const LineariseOptions& l, const Mechanism& mechanism,
+                     const LinearRequest& request) {
+  const Start start = state_of(o, l, mechanism);
+  if (l.equilibrium.empty()) return linear_model(mechanism, start, request);
+  const Search search = l.equilibrium == "nearest" ? Search::nearest : Search::settle;
+  return linear_model(mechanism, find_equilibrium(mechanism, start, search), request);
 }
 
 }  // namespace
@@ -67,8 +64,7 @@ int linearise_verb(const Options& o, const LineariseOptions& l) {
   request.inputs = names_in(l.inputs);
   request.outputs = names_in(l.outputs);
   request.independent = names_in(l.independent);
-  const Start state = state_of(o, l, mechanism, request.pivot);
-  const LinearModel model = linear_model(mechanism, state, request);
+  const LinearModel model = model_of(o, l, mechanism, request);
   const std::string json = linear_json(model);
   if (!o.out.empty() && !write_results({{o.out / "linear.json", json},
                                         {o.out / "linear.m", linear_octave(model)},

@@ -97,14 +97,8 @@ py::dict linearise(const Bench& b, const std::string& kind, double t,
     const py::gil_scoped_release others_go_on;
     if (!equilibrium.empty()) {
       const Mechanism held(held_at_start(b.mechanism->scene()), b.mechanism->options());
-      const Equilibrium rest =
-          find_equilibrium(held, assemble(held).start, search_named(equilibrium));
-      Start at;
-      at.t = rest.t;
-      at.q = rest.q;
-      at.u = Vector::Zero(held.nv());
-      request.pivot = rest.pivot;
-      model = linear_model(held, at, request);
+      model = linear_model(
+          held, find_equilibrium(held, assemble(held).start, search_named(equilibrium)), request);
     } else if (q || u) {
       const Tree& tree = b.mechanism->tree();
       model = linear_model(

@@ -195,9 +195,9 @@ TEST_F(SweepProgram, ThreadsProcessesAndKillsChangeNothing) {
 
   if (!MOMENTA_WITH_MPI || std::system("command -v mpirun >/dev/null") != 0) return;
   // Under sanitizers: Open MPI leaves what it allocated to the system.
-  const std::string three =
-      "ASAN_OPTIONS=detect_leaks=0 timeout 600 mpirun --allow-run-as-root --oversubscribe -n 3 ";
-  const Outcome ranks = call(sweep("ranks"), "/dev/null", three);
+  const std::string quiet = "ASAN_OPTIONS=detect_leaks=0 ";
+  const std::string three = " mpirun --allow-run-as-root --oversubscribe -n 3 ";
+  const Outcome ranks = call(sweep("ranks"), "/dev/null", quiet + "timeout 600" + three);
   EXPECT_EQ(ranks.status, 0) << ranks.err;
   EXPECT_EQ(csv("ranks"), expected);
   const auto shared = nlohmann::json::parse(text_of(folder_ / "ranks" / "sweep.json"));
@@ -205,7 +205,7 @@ TEST_F(SweepProgram, ThreadsProcessesAndKillsChangeNothing) {
   // What rank 0 alone can tell is told, and nobody waits for it.
   fs::create_directories(folder_ / "foreign");
   std::ofstream(folder_ / "foreign" / "study.csv") << "another verb's";
-  const Outcome refused = call(sweep("foreign"), "/dev/null", three);
+  const Outcome refused = call(sweep("foreign"), "/dev/null", quiet + "timeout 60" + three);
   EXPECT_EQ(refused.status, 2) << refused.err;
   EXPECT_NE(refused.err.find("study.csv of another verb"), std::string::npos) << refused.err;
 }

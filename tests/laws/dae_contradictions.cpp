@@ -142,13 +142,7 @@ TEST(Contradictions, EffortsAndModesAreThoseOfNumbersThatAgree) {
     EXPECT_LT(std::abs(found.spectrum.modes[0].s - right.spectrum.modes[0].s), 10 * within);
     // The linear model has the same pair, alone.
     const Mechanism mechanism(scene);
-    Start at;
-    at.t = found.equilibrium.t;
-    at.q = found.equilibrium.q;
-    at.u = VectorXd::Zero(mechanism.nv());
-    LinearRequest request;
-    request.pivot = found.equilibrium.pivot;
-    const LinearModel model = linear_model(mechanism, at, request);
+    const LinearModel model = linear_model(mechanism, found.equilibrium);
     ASSERT_EQ(model.poles.size(), 2);
     EXPECT_NEAR(std::abs(model.poles[0].imag()), std::abs(found.spectrum.modes[0].s.imag()), 1e-8);
   };

@@ -39,7 +39,8 @@ Start later(const Mechanism& mechanism, double time) {
   return state_after(mechanism, equations::start_of(mechanism), settings, 60);
 }
 
-LinearModel model_of(const Mechanism& mechanism, const Start& at,
+template <typename State>
+LinearModel model_of(const Mechanism& mechanism, const State& at,
                      LinearRequest::Kind kind = LinearRequest::Kind::minimal) {
   LinearRequest request;
   request.kind = kind;
@@ -188,12 +189,8 @@ TEST(LinearModels, HaveThePolesOfSmallMotions) {
     SCOPED_TRACE(scene.name);
     const Mechanism mechanism(scene);
     const ModesResult modes = find_modes(mechanism, equations::start_of(mechanism), {});
-    Start at;
-    at.t = modes.equilibrium.t;
-    at.q = modes.equilibrium.q;
-    at.u = VectorXd::Zero(mechanism.nv());
     for (const auto kind : {LinearRequest::Kind::minimal, LinearRequest::Kind::descriptor}) {
-      const LinearModel model = model_of(mechanism, at, kind);
+      const LinearModel model = model_of(mechanism, modes.equilibrium, kind);
       ASSERT_EQ(model.poles.size(), 2 * modes.spectrum.mobility);
       const double size = model.poles.cwiseAbs().maxCoeff();
       for (const Mode& mode : modes.spectrum.modes) {
