@@ -1,10 +1,9 @@
 #include <momenta/core/kernel/jacobian_pass.h>
+#include <momenta/core/kernel/levels/at_level.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 
 #include <algorithm>
-#include <stdexcept>
-#include <type_traits>
 #include <vector>
 
 namespace momenta {
@@ -18,31 +17,17 @@ std::unique_ptr<BatchSweeps> batch_sweeps_at(const LinkTree& tree);
 template <int Level>
 std::unique_ptr<BatchSweeps> batch_sweeps_at(const PlanarTree& tree);
 
-/// What `at` makes for the level: at(std::integral_constant<int, level>).
-template <class At>
-std::invoke_result_t<At, std::integral_constant<int, 1>> make(int level, At&& at) {
-#ifdef MOMENTA_LEVEL4
-  if (level >= 4) return at(std::integral_constant<int, 4>());
-#endif
-#ifdef MOMENTA_LEVEL3
-  if (level >= 3) return at(std::integral_constant<int, 3>());
-#endif
-#ifdef MOMENTA_LEVEL1
-  if (level >= 1) return at(std::integral_constant<int, 1>());
-#endif
-  throw std::logic_error("no kernels of this level");
-}
 std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level, const Branches* branches) {
-  return make(level, [&](auto l) { return sweeps_at<l>(tree, branches); });
+  return at_level(level, [&]<int Level>() { return sweeps_at<Level>(tree, branches); });
 }
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level) {
-  return make(level, [&](auto l) { return sweeps_at<l>(tree); });
+  return at_level(level, [&]<int Level>() { return sweeps_at<Level>(tree); });
 }
 std::unique_ptr<BatchSweeps> make_batch_sweeps(const LinkTree& tree, int level) {
-  return make(level, [&](auto l) { return batch_sweeps_at<l>(tree); });
+  return at_level(level, [&]<int Level>() { return batch_sweeps_at<Level>(tree); });
 }
 std::unique_ptr<BatchSweeps> make_batch_sweeps(const PlanarTree& tree, int level) {
-  return make(level, [&](auto l) { return batch_sweeps_at<l>(tree); });
+  return at_level(level, [&]<int Level>() { return batch_sweeps_at<Level>(tree); });
 }
 
 bool is_hamiltonian_on_revolutes(const LinkTree& tree) {

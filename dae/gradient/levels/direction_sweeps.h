@@ -52,17 +52,14 @@ class NumberRows {
 /// By the level of best_level(); what they are made of stays where it is. `fade`: where pivots
 /// fade. Null where the fronts of one direction fill the registers by themselves. @pre
 /// swept.plan.fits()
-std::unique_ptr<DirectionSweeps> make_direction_sweeps(const PlanarTree& tree,
-                                                       const SweptLoops<Planar>& swept, double fade,
+template <class Tree, class Space>
+std::unique_ptr<DirectionSweeps> make_direction_sweeps(const Tree& tree,
+                                                       const SweptLoops<Space>& swept, double fade,
                                                        bool body_forces);
-std::unique_ptr<DirectionSweeps> make_direction_sweeps(const LinkTree& tree,
-                                                       const SweptLoops<Spatial>& swept,
-                                                       double fade, bool body_forces);
 /// With places where `loops` is not null, in the model's frames; `count`: how many loops the
 /// numbers are of.
-std::unique_ptr<NumberRows> make_number_rows(const Model<Planar>& model, std::size_t count,
-                                             const LoopModel<Planar>* loops);
-std::unique_ptr<NumberRows> make_number_rows(const Model<Spatial>& model, std::size_t count,
-                                             const LoopModel<Spatial>* loops);
+template <class Space>
+std::unique_ptr<NumberRows> make_number_rows(const Model<Space>& model, std::size_t count,
+                                             const LoopModel<Space>* loops);
 
 }  // namespace momenta

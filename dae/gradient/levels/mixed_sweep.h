@@ -41,9 +41,8 @@ bool mixed_sweep_fits(const Model<Space>& model, const LoopModel<Space>& loops) 
 
 /// By the level of best_level(). `joint_forces`: those of joints are among the potential ones, else
 /// left out. @pre it fits; both stay where they are
-std::unique_ptr<MixedSweep> make_mixed_sweep(const Model<Planar>& model,
-                                             const LoopModel<Planar>& loops, bool joint_forces);
-std::unique_ptr<MixedSweep> make_mixed_sweep(const Model<Spatial>& model,
-                                             const LoopModel<Spatial>& loops, bool joint_forces);
+template <class Space>
+std::unique_ptr<MixedSweep> make_mixed_sweep(const Model<Space>& model,
+                                             const LoopModel<Space>& loops, bool joint_forces);
 
 }  // namespace momenta

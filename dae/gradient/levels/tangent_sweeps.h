@@ -102,18 +102,14 @@ class KineticSweep {
 
 /// All of one mechanism, by the level of best_level(); what they are made of stays where it is.
 /// `fade`: where pivots fade. @pre swept.plan.fits()
-std::unique_ptr<TangentSweeps> make_tangent_sweeps(const PlanarTree& tree,
-                                                   const SweptLoops<Planar>& swept, double fade,
-                                                   bool body_forces);
-std::unique_ptr<TangentSweeps> make_tangent_sweeps(const LinkTree& tree,
-                                                   const SweptLoops<Spatial>& swept, double fade,
-                                                   bool body_forces);
+template <class Tree, class Space>
+std::unique_ptr<TangentSweeps> make_tangent_sweeps(const Tree& tree, const SweptLoops<Space>& swept,
+                                                   double fade, bool body_forces);
 /// `of_places` false: without the places of joints and the numbers of loops, at less cost.
-std::unique_ptr<NumberSweep> make_number_sweep(const Model<Planar>& model,
-                                               const LoopModel<Planar>& loops, bool of_places);
-std::unique_ptr<NumberSweep> make_number_sweep(const Model<Spatial>& model,
-                                               const LoopModel<Spatial>& loops, bool of_places);
-std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Planar>& model);
-std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Spatial>& model);
+template <class Space>
+std::unique_ptr<NumberSweep> make_number_sweep(const Model<Space>& model,
+                                               const LoopModel<Space>& loops, bool of_places);
+template <class Space>
+std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Space>& model);
 
 }  // namespace momenta

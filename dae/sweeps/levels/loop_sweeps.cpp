@@ -1,8 +1,8 @@
+#include <momenta/core/kernel/levels/at_level.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 namespace momenta {
@@ -16,16 +16,9 @@ namespace {
 template <class Space, class Tree>
 std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept, int level,
                                    LoopedBranchGroups looped_branches) {
-#ifdef MOMENTA_LEVEL4
-  if (level >= 4) return looped_sweeps_at<4>(tree, swept, std::move(looped_branches));
-#endif
-#ifdef MOMENTA_LEVEL3
-  if (level >= 3) return looped_sweeps_at<3>(tree, swept, std::move(looped_branches));
-#endif
-#ifdef MOMENTA_LEVEL1
-  if (level >= 1) return looped_sweeps_at<1>(tree, swept, std::move(looped_branches));
-#endif
-  throw std::logic_error("no kernels of this level");
+  return at_level(level, [&]<int Level>() {
+    return looped_sweeps_at<Level>(tree, swept, std::move(looped_branches));
+  });
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// The best level of this machine as a constant, of those that are compiled.
+// A level found at run time as a constant, of those that are compiled.
 
 #include <momenta/core/kernel/levels/level.h>
 
@@ -9,8 +9,7 @@ namespace momenta {
 
 /// act.operator()<Level>()
 template <class Act>
-auto at_best_level(Act&& act) {
-  [[maybe_unused]] const int level = best_level();
+auto at_level([[maybe_unused]] int level, Act&& act) {
 #ifdef MOMENTA_LEVEL4
   if (level >= 4) return act.template operator()<4>();
 #endif

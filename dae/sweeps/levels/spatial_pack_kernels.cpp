@@ -1,5 +1,5 @@
 #include <momenta/dae/sweeps/levels/spatial_packs.h>
 
 namespace momenta {
-MOMENTA_SPATIAL_PACKS(, 3)
+MOMENTA_SPATIAL_PACKS(, MOMENTA_KERNEL_LEVEL)
 }  // namespace momenta

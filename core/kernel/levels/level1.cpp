@@ -1,6 +1,0 @@
-#include <momenta/core/kernel/levels/open_sweeps_at.h>
-
-namespace momenta {
-template std::unique_ptr<OpenSweeps> sweeps_at<1>(const LinkTree&, const Branches*);
-template std::unique_ptr<OpenSweeps> sweeps_at<1>(const PlanarTree&);
-}  // namespace momenta

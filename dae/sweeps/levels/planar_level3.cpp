@@ -1,7 +1,0 @@
-#include <momenta/dae/sweeps/levels/loop_sweeps_at.h>
-
-namespace momenta {
-template std::unique_ptr<LoopedSweeps> looped_sweeps_at<3>(const PlanarTree&,
-                                                           const SweptLoops<Planar>&,
-                                                           LoopedBranchGroups);
-}  // namespace momenta

@@ -1,9 +1,0 @@
-#include <momenta/dae/sweeps/levels/loop_sweeps_at.h>
-#include <momenta/dae/sweeps/levels/spatial_packs.h>
-
-namespace momenta {
-MOMENTA_SPATIAL_PACKS(extern, 4)
-template std::unique_ptr<LoopedSweeps> looped_sweeps_at<4>(const LinkTree&,
-                                                           const SweptLoops<Spatial>&,
-                                                           LoopedBranchGroups);
-}  // namespace momenta
