@@ -4,7 +4,7 @@
 
 #include <momenta/core/expression/functions_quad.h>
 #include <momenta/dae/equations/quad_reference.h>
-#include <momenta/dae/solver/radau_dae_collocation.h>
+#include <momenta/dae/solver/radau_collocation.h>
 
 #include <array>
 #include <cmath>
@@ -135,7 +135,7 @@ std::vector<Quad> solution(const EquationFile& file, const EquationStart& start,
   std::vector<char> estimated(y.size(), 1);
   for (std::size_t i = 0; i < y.size(); ++i)
     estimated[i] = start.index_of[i] == 1 || start.appears[i] ? 1 : 0;
-  RadauDaeCollocation<Quad> radau(start.index_of, std::move(estimated));
+  RadauCollocation<Quad> radau(start.index_of, std::move(estimated));
   const double span = end - file.start;
   double t = file.start, h = 1e-6 * span;
   for (steps = 0; t < end;) {

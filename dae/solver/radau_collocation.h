@@ -1,24 +1,27 @@
 #pragma once
-// Collocation at the s nodes of Radau IIA, of order 2s − 1, for stiff motions to more digits than
-// doubles have: values of any scalar, Newton's matrix in doubles. With Z_i = y(t + c_i h) − y
+// Collocation at the s nodes of Radau IIA for F(t, y, y') = 0, to more digits than doubles have:
+// values of any scalar, Newton's matrix in doubles. The unknowns are the rates K_i at the nodes,
 //
-//   Z_i = h Σ_j a_ij f(t + c_j h, y + Z_j),                      y(t + h) = y + Z_s, c_s = 1
-//   (1 − h A ⊗ J) ΔZ = h (A ⊗ 1) F(Z) − Z,                       J = ∂f/∂y at the start
+//   F(t + c_i h, Y_i, K_i) = 0,   Y_i = y + h Σ_j a_ij K_j,            y(t + h) = Y_s, c_s = 1
+//   (1 ⊗ ∂F/∂y' + h A ⊗ ∂F/∂y) ΔK = −F,                          matrices of the start
 //
-// Residuals have the scalar's digits, the matrix has those of a double: each iteration takes away
-// what J has not changed by, whatever the digits asked for. The estimate is that of the polynomial
-// p through f at the nodes, carried back to the start,
+// so that the end of a step meets F to the last digit, algebraic equations with it. The estimate is
+// that of the polynomial p through the K_i, carried back to the start,
 //
-//   e = h γ (1 − h γ J)⁻¹ (f(t, y) − p(0)),   γ = a_ss,
+//   e = h γ (∂F/∂y' + h γ ∂F/∂y)⁻¹ ∂F/∂y' (y' − p(0)),   γ = a_ss,
 //
-// of order s, so that errors are well below it, and filtered so that stiff components do not make
-// it larger than it is. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.5,
-// IV.8.
+// of order s. Errors of a variable of index k are one power of h worse for each index above 1: in
+// the norms of estimate and iteration they count h^(k−1) times, and where it has no rate in F it is
+// not in the estimate, as ∂F/∂y' has no column for it. Order on y, on variables of index 2, of
+// index 3: (2s − 1, s) in index-2 systems, (2s − 2, s, s − 1) in those of index 3.
+// Source: Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by
+// Runge-Kutta Methods; Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8.
 
 #include <momenta/core/scalar/dual.h>
 #include <momenta/dae/solver/newton_matrix.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -83,40 +86,218 @@ struct RadauNodes {
   }
 };
 
+/// `System` has size(); residual(t, y, ydot, r) in S, of S t; and slopes(t, y, ydot, by_y, by_rate)
+/// in doubles, dense by columns; each false where it fails.
 template <class S>
 class RadauCollocation {
  public:
-  static constexpr std::size_t stages = 9;
-
-  explicit RadauCollocation(std::size_t size)
-      : n_(size),
-        increment_(half_of_the_digits()),
-        first_(size),
-        at_(size),
-        jacobian_(size * size),
-        right_(stages * size),
-        z_(stages, std::vector<S>(size)),
-        f_(stages, std::vector<S>(size)),
-        newton_(make_newton_matrix<double>(static_cast<int>(stages * size), none_)),
-        filter_(make_newton_matrix<double>(static_cast<int>(size), none_)) {}
+  /// `index` of each variable, from 1; `estimated`: whether it is in the estimate.
+  RadauCollocation(std::vector<int> index, std::vector<char> estimated, std::size_t stages = 9)
+      : RadauCollocation(index.size(), stages) {
+    index_ = std::move(index);
+    estimated_ = std::move(estimated);
+  }
 
   RadauCollocation(const RadauCollocation&) = delete;
   RadauCollocation& operator=(const RadauCollocation&) = delete;
 
+  /// (y, y') at t + h from that at t, in place, with an estimate below `tolerance` in units of
+  /// scale + |y|. False, both untouched: h is too long. O((s size)³)
+  template <class System>
+  bool step(const S& t, const S& h, std::vector<S>& y, std::vector<S>& ydot,
+            const std::vector<double>& scale, double tolerance, System& system) {
+    if (!factor(t, h, y, ydot, system)) return false;
+    for (auto& k : k_) k = ydot;
+    if (!iterate(t, h, y, scale, 1e-4 * tolerance, system)) return false;
+    estimate_ = estimate(h, y, ydot, scale);
+    if (!(estimate_ <= tolerance)) return false;
+    place(s_ - 1, h, y);
+    y = at_;
+    ydot = k_[s_ - 1];
+    return true;
+  }
+  /// Of the last step that converged.
+  double last_estimate() const { return estimate_; }
+
+ private:
+  RadauCollocation(std::size_t size, std::size_t stages)
+      : n_(size),
+        s_(stages),
+        nodes_(stages),
+        by_y_(size * size),
+        by_rate_(size * size),
+        right_(stages * size),
+        row_(stages * size),
+        at_(size),
+        r_(size),
+        k_(stages, std::vector<S>(size)),
+        newton_(make_newton_matrix<double>(static_cast<int>(stages * size), none_)),
+        filter_(make_newton_matrix<double>(static_cast<int>(size), none_)) {}
+
+  static constexpr int most_iterations = 60;
+  /// h^(k−1) of variable l of index k.
+  double weight(std::size_t l, double h) const { return std::pow(h, index_[l] - 1); }
+  double gamma() const { return value_of(nodes_.a[s_ - 1][s_ - 1]); }
+
+  template <class System>
+  bool factor(const S& t, const S& h, const std::vector<S>& y, const std::vector<S>& ydot,
+              System& system) {
+    std::vector<double> point(n_), rate(n_);
+    for (std::size_t i = 0; i < n_; ++i) point[i] = value_of(y[i]), rate[i] = value_of(ydot[i]);
+    if (!system.slopes(value_of(t), point.data(), rate.data(), by_y_.data(), by_rate_.data()))
+      return false;
+    const double length = value_of(h);
+    const std::size_t size = s_ * n_;
+    double *newton = newton_->values(), *filter = filter_->values();
+    std::fill(row_.begin(), row_.end(), 0.0);
+    for (std::size_t j = 0; j < s_; ++j)
+      for (std::size_t c = 0; c < n_; ++c)
+        for (std::size_t i = 0; i < s_; ++i)
+          for (std::size_t l = 0; l < n_; ++l) {
+            double& entry = newton[(j * n_ + c) * size + i * n_ + l];
+            entry = ((i == j ? by_rate_[c * n_ + l] : 0.0) +
+                     length * value_of(nodes_.a[i][j]) * by_y_[c * n_ + l]) /
+                    weight(c, length);
+            row_[i * n_ + l] = std::max(row_[i * n_ + l], std::abs(entry));
+          }
+    // With rates of index k in units of h^(1−k), and rows brought to one size, the matrix stays
+    // regular for short steps.
+    for (double& largest : row_) largest = largest > 0 ? largest : 1.0;
+    for (std::size_t c = 0; c < size; ++c)
+      for (std::size_t l = 0; l < size; ++l) newton[c * size + l] /= row_[l];
+    for (std::size_t c = 0; c < n_; ++c)
+      for (std::size_t l = 0; l < n_; ++l)
+        filter[c * n_ + l] = by_rate_[c * n_ + l] + length * gamma() * by_y_[c * n_ + l];
+    return newton_->factor() && filter_->factor();
+  }
+
+  /// at_ = Y_i.
+  void place(std::size_t i, const S& h, const std::vector<S>& y) {
+    for (std::size_t l = 0; l < n_; ++l) {
+      S sum = S(0.0);
+      for (std::size_t j = 0; j < s_; ++j) sum += nodes_.a[i][j] * k_[j][l];
+      at_[l] = y[l] + h * sum;
+    }
+  }
+
+  /// K to a last change of h K below `tolerance`.
+  template <class System>
+  bool iterate(const S& t, const S& h, const std::vector<S>& y, const std::vector<double>& scale,
+               double tolerance, System& system) {
+    // Of index k the iteration takes up to k turns to gain: what one unknown misses the next one
+    // takes over.
+    std::array<double, 3> before{};
+    const double length = value_of(h);
+    for (int count = 0; count < most_iterations; ++count) {
+      for (std::size_t i = 0; i < s_; ++i) {
+        place(i, h, y);
+        if (!system.residual(t + h * nodes_.c[i], at_.data(), k_[i].data(), r_.data()))
+          return false;
+        for (std::size_t l = 0; l < n_; ++l)
+          right_[i * n_ + l] = -value_of(r_[l]) / row_[i * n_ + l];
+      }
+      newton_->solve(right_.data());
+      double change = 0;
+      for (std::size_t i = 0; i < s_; ++i)
+        for (std::size_t l = 0; l < n_; ++l) {
+          const double weighed = right_[i * n_ + l];
+          k_[i][l] += S(weighed / weight(l, length));
+          const double relative =
+              std::abs(length * weighed) / (scale[l] + std::abs(value_of(y[l])));
+          if (!std::isfinite(relative)) return false;
+          change = std::max(change, relative);
+        }
+      if (change <= tolerance) return true;
+      double& earlier = before[static_cast<std::size_t>(count) % before.size()];
+      if (count > 3 && change > 0.5 * earlier) return false;
+      earlier = change;
+    }
+    return false;
+  }
+
+  double estimate(const S& h, const std::vector<S>& y, const std::vector<S>& ydot,
+                  const std::vector<double>& scale) {
+    std::vector<double> apart(n_), filtered(n_, 0.0);
+    for (std::size_t l = 0; l < n_; ++l) {
+      S sum = ydot[l];
+      for (std::size_t j = 0; j < s_; ++j) sum -= nodes_.at_start[j] * k_[j][l];
+      apart[l] = value_of(h) * gamma() * value_of(sum);
+    }
+    for (std::size_t c = 0; c < n_; ++c)
+      for (std::size_t l = 0; l < n_; ++l) filtered[l] += by_rate_[c * n_ + l] * apart[c];
+    filter_->solve(filtered.data());
+    double largest = 0;
+    for (std::size_t l = 0; l < n_; ++l) {
+      if (!estimated_[l]) continue;
+      const double relative =
+          std::abs(filtered[l]) * weight(l, value_of(h)) / (scale[l] + std::abs(value_of(y[l])));
+      if (!std::isfinite(relative)) return relative;
+      largest = std::max(largest, relative);
+    }
+    return largest;
+  }
+
+  std::size_t n_, s_;
+  RadauNodes<S> nodes_;
+  std::vector<int> index_;
+  std::vector<char> estimated_;
+  std::vector<double> by_y_, by_rate_, right_, row_;
+  std::vector<S> at_, r_;
+  std::vector<std::vector<S>> k_;  ///< stage by stage
+  JacobianPattern none_;           ///< dense
+  std::unique_ptr<NewtonMatrix<double>> newton_, filter_;
+  double estimate_ = 0;
+};
+
+/// y' = f(t, y) as F = y' − f, with ∂f/∂y by differences of half the digits.
+template <class S>
+class OdeRadauCollocation {
+ public:
+  explicit OdeRadauCollocation(std::size_t size)
+      : scale_(size, 1.0),
+        rate_(size),
+        at_(size),
+        f_(size),
+        moved_(size),
+        radau_(std::vector<int>(size, 1), std::vector<char>(size, 1)) {}
+
   /// y at t + h from y at t, in place, with an estimate below `tolerance` (1 + |y|) in every
   /// component; rhs(t, y, ydot) returns false where it fails. False, y untouched: h is too long.
-  /// O((s size)³)
   template <class Rhs>
   bool step(double t, double h, std::vector<S>& y, double tolerance, Rhs&& rhs) {
-    if (!differentiate(t, y, rhs) || !factor(h)) return false;
-    for (auto& z : z_) std::fill(z.begin(), z.end(), S(0.0));
-    if (!iterate(t, h, y, 1e-3 * tolerance, rhs) || !(estimate(h, y) <= tolerance)) return false;
-    for (std::size_t i = 0; i < n_; ++i) y[i] += z_[stages - 1][i];
-    return true;
+    Residual<Rhs> f{*this, rhs};
+    return rhs(t, y.data(), rate_.data()) &&
+           radau_.step(S(t), S(h), y, rate_, scale_, tolerance, f);
   }
 
  private:
-  static constexpr int most_iterations = 40;
+  template <class Rhs>
+  struct Residual {
+    OdeRadauCollocation& room;
+    Rhs& rhs;
+
+    bool residual(const S& t, const S* y, const S* ydot, S* r) {
+      if (!rhs(value_of(t), y, r)) return false;
+      for (std::size_t i = 0; i < room.f_.size(); ++i) r[i] = ydot[i] - r[i];
+      return true;
+    }
+    bool slopes(double t, const double* y, const double*, double* by_y, double* by_rate) {
+      const std::size_t n = room.f_.size();
+      std::copy_n(y, n, room.at_.begin());
+      std::fill_n(by_rate, n * n, 0.0);
+      if (!rhs(t, room.at_.data(), room.f_.data())) return false;
+      for (std::size_t k = 0; k < n; ++k) {
+        const S width = S(room.increment_ * (1 + std::abs(y[k])));
+        room.at_[k] = S(y[k]) + width;
+        if (!rhs(t, room.at_.data(), room.moved_.data())) return false;
+        for (std::size_t i = 0; i < n; ++i)
+          by_y[k * n + i] = value_of((room.f_[i] - room.moved_[i]) / width);
+        by_rate[k * n + k] = 1;
+        room.at_[k] = S(y[k]);
+      }
+      return true;
+    }
+  };
 
   static double half_of_the_digits() {
     double epsilon = 1;
@@ -124,97 +305,10 @@ class RadauCollocation {
     return std::sqrt(epsilon);
   }
 
-  /// f and J at the start, J by columns.
-  template <class Rhs>
-  bool differentiate(double t, const std::vector<S>& y, Rhs& rhs) {
-    if (!rhs(t, y.data(), first_.data())) return false;
-    at_ = y;
-    auto& moved = f_[0];
-    for (std::size_t k = 0; k < n_; ++k) {
-      const S width = S(increment_ * (1 + std::abs(value_of(y[k]))));
-      at_[k] = y[k] + width;
-      if (!rhs(t, at_.data(), moved.data())) return false;
-      for (std::size_t i = 0; i < n_; ++i)
-        jacobian_[k * n_ + i] = value_of((moved[i] - first_[i]) / width);
-      at_[k] = y[k];
-    }
-    return true;
-  }
-
-  bool factor(double h) {
-    const std::size_t size = stages * n_;
-    double *newton = newton_->values(), *filter = filter_->values();
-    for (std::size_t j = 0; j < stages; ++j)
-      for (std::size_t k = 0; k < n_; ++k)
-        for (std::size_t i = 0; i < stages; ++i) {
-          const double weight = h * value_of(nodes_.a[i][j]);
-          for (std::size_t l = 0; l < n_; ++l)
-            newton[(j * n_ + k) * size + i * n_ + l] =
-                (i == j && k == l ? 1.0 : 0.0) - weight * jacobian_[k * n_ + l];
-        }
-    for (std::size_t k = 0; k < n_; ++k)
-      for (std::size_t l = 0; l < n_; ++l)
-        filter[k * n_ + l] = (k == l ? 1.0 : 0.0) - h * gamma() * jacobian_[k * n_ + l];
-    return newton_->factor() && filter_->factor();
-  }
-  double gamma() const { return value_of(nodes_.a[stages - 1][stages - 1]); }
-
-  /// Z to a last change below `tolerance`.
-  template <class Rhs>
-  bool iterate(double t, double h, const std::vector<S>& y, double tolerance, Rhs& rhs) {
-    double before = 0;
-    for (int count = 0; count < most_iterations; ++count) {
-      for (std::size_t j = 0; j < stages; ++j) {
-        for (std::size_t i = 0; i < n_; ++i) at_[i] = y[i] + z_[j][i];
-        if (!rhs(t + h * value_of(nodes_.c[j]), at_.data(), f_[j].data())) return false;
-      }
-      for (std::size_t i = 0; i < stages; ++i)
-        for (std::size_t l = 0; l < n_; ++l) {
-          S sum = S(0.0);
-          for (std::size_t j = 0; j < stages; ++j) sum += nodes_.a[i][j] * f_[j][l];
-          right_[i * n_ + l] = value_of(S(h) * sum - z_[i][l]);
-        }
-      newton_->solve(right_.data());
-      double change = 0;
-      for (std::size_t i = 0; i < stages; ++i)
-        for (std::size_t l = 0; l < n_; ++l) {
-          const double dz = right_[i * n_ + l];
-          z_[i][l] += S(dz);
-          const double relative = std::abs(dz) / (1 + std::abs(value_of(y[l])));
-          if (!std::isfinite(relative)) return false;
-          change = std::max(change, relative);
-        }
-      if (change <= tolerance) return true;
-      if (count > 1 && change > 0.5 * before) return false;
-      before = change;
-    }
-    return false;
-  }
-
-  double estimate(double h, const std::vector<S>& y) {
-    for (std::size_t l = 0; l < n_; ++l) {
-      S sum = first_[l];
-      for (std::size_t j = 0; j < stages; ++j) sum -= nodes_.at_start[j] * f_[j][l];
-      right_[l] = h * gamma() * value_of(sum);
-    }
-    filter_->solve(right_.data());
-    double largest = 0;
-    for (std::size_t l = 0; l < n_; ++l) {
-      const double relative = std::abs(right_[l]) / (1 + std::abs(value_of(y[l])));
-      if (!std::isfinite(relative)) return relative;
-      largest = std::max(largest, relative);
-    }
-    return largest;
-  }
-
-  std::size_t n_;
-  double increment_;  ///< of J's differences, over 1 + |y|
-  RadauNodes<S> nodes_{stages};
-  std::vector<S> first_, at_;
-  std::vector<double> jacobian_, right_;
-  std::vector<std::vector<S>> z_, f_;  ///< stage by stage
-  JacobianPattern none_;               ///< dense
-  std::unique_ptr<NewtonMatrix<double>> newton_, filter_;
+  double increment_ = half_of_the_digits();  ///< relative to 1 + |y|
+  std::vector<double> scale_;
+  std::vector<S> rate_, at_, f_, moved_;
+  RadauCollocation<S> radau_;
 };
 
 }  // namespace momenta

@@ -158,7 +158,7 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
   const auto solved = [&](double quad, double in_steps, double of_time, OwnReferenceForces* told) {
     const double least = in_time ? of_time : 0;
     return implicit ? solve(mechanism, start, end, count, std::max(in_steps, least),
-                            RadauCollocation<Quad>(size), more, told, going_on)
+                            OdeRadauCollocation<Quad>(size), more, told, going_on)
                     : solve(mechanism, start, end, count, std::max(quad, least),
                             Extrapolation<Quad>(size), more, told, going_on);
   };
