@@ -6,6 +6,7 @@
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
+#include <momenta/dae/study/run_quantities.h>
 
 #include <cstring>
 
@@ -85,97 +86,30 @@ void bind_runs(py::module_& module) {
   py::class_<Run, RunPtr> run(module, "Run",
                               "The result of one form by one integrator. run['B.x'] is a "
                               "column of its trajectory; arrays are views.");
-  const auto text = [&](const char* name, auto get, const char* doc) {
+  for (const RunQuantity& quantity : run_quantities())
+    if (quantity.attribute)
+      run.def_property_readonly(
+          quantity.name, [value = quantity.value](const Run& r) { return value(r.result); },
+          quantity.meaning);
+  const auto member = [&](const char* name, auto get, const char* doc) {
     run.def_property_readonly(
         name, [get](const Run& r) { return get(r.result); }, doc);
   };
-  text(
-      "form", [](const RunResult& r) { return r.settings.form; }, "name of the form");
-  text(
-      "integrator", [](const RunResult& r) { return r.settings.integrator; },
-      "name of the integrator");
-  text(
-      "gauge", [](const RunResult& r) { return r.settings.gauge; }, "gauge of momentum forms");
-  text(
-      "rtol", [](const RunResult& r) { return r.settings.rtol; }, "relative tolerance");
-  text(
-      "step", [](const RunResult& r) { return r.settings.step; }, "fixed step [s]; 0: adaptive");
-  text(
-      "project", [](const RunResult& r) { return r.settings.project; },
-      "whether positions were corrected after each step");
-  text(
-      "status", [](const RunResult& r) { return r.status; },
-      "done, event (one of the scene's ended it), failed, time limit or came apart");
-  text(
-      "reason", [](const RunResult& r) { return r.reason; }, "one sentence when not done");
-  text(
-      "departure", [](const RunResult& r) { return r.departure; },
-      "one sentence where a run that reached its end is not to be relied on: how far the balance "
-      "of energy or the rates of loops are off; else empty");
-  text(
-      "stopped_at", [](const RunResult& r) { return r.stopped_at; },
-      "time at which it stopped [s]");
-  text(
+  member(
       "events", events,
       "events of the scene, in the order of time: dicts of name, t [s], direction (up or down) and "
       "the trajectory's columns there, by their names without units");
-  text(
+  member(
       "event_remarks", [](const RunResult& r) { return r.event_remarks; },
       "one sentence for each event whose formula had no value");
-  text("stops", stops,
-       "contacts at rigid stops, in the order of time: dicts of joint, limit, t [s], what (impact, "
-       "held, released), the rates before and after an impact, and its impulse");
-  text("counters", counters, "numbers of steps, evaluations, ... by name");
-  text(
-      "cpu_s", [](const RunResult& r) { return r.cpu_s; }, "processor time [s]");
-  text(
-      "position_drift_max", [](const RunResult& r) { return r.position_drift_max; },
-      "largest |Phi| at the output times, in drift_unit");
-  text(
-      "velocity_drift_max", [](const RunResult& r) { return r.velocity_drift_max; },
-      "largest |Phidot| at the output times, in drift_unit/s");
-  text(
+  member("stops", stops,
+         "contacts at rigid stops, in the order of time: dicts of joint, limit, t [s], what "
+         "(impact, held, released), the rates before and after an impact, and its impulse");
+  member("counters", counters, "numbers of steps, evaluations, ... by name");
+  member(
       "drift_unit", [](const RunResult& r) { return r.drift_unit; },
       "unit of the position drift: m, or rad where all loop equations are angles; empty without "
       "loops");
-  text(
-      "angle_drift_max", [](const RunResult& r) { return r.angle_drift_max; },
-      "largest |Phi| of the equations in rad, where others are in m [rad]");
-  text(
-      "angle_rate_drift_max", [](const RunResult& r) { return r.angle_rate_drift_max; },
-      "largest |Phidot| of the same equations [rad/s]");
-  text(
-      "energy_error_max", [](const RunResult& r) { return r.energy_error_max; },
-      "largest |energy - energy(0)| [J]");
-  text(
-      "position_error_max", [](const RunResult& r) { return r.position_error_max; },
-      "error against the reference, max |err| / (1 + |ref|); nan without a reference");
-  text(
-      "force_error_max", [](const RunResult& r) { return r.force_error_max; },
-      "error of lambda solved from (3); nan without a reference that has it");
-  text(
-      "multiplier_error_max", [](const RunResult& r) { return r.multiplier_error_max; },
-      "error of lambda as the form itself has it; nan without a reference that has it");
-  text(
-      "multiplier_difference_max", [](const RunResult& r) { return r.multiplier_difference_max; },
-      "lambda of the form itself against lambda solved from (3), max |difference| / (1 + "
-      "|lambda|)");
-  text(
-      "momentum_error_max", [](const RunResult& r) { return r.momentum_error_max; },
-      "error of p without its gauge; nan without a reference that has M u");
-  text(
-      "impulse_error_max", [](const RunResult& r) { return r.impulse_error_max; },
-      "error of the loops' impulses, the integral of lambda; nan without a reference that has "
-      "them");
-  text(
-      "effort_error_max", [](const RunResult& r) { return r.effort_error_max; },
-      "error of the efforts of drives; nan without a reference that has them");
-  text(
-      "reaction_error_max", [](const RunResult& r) { return r.reaction_error_max; },
-      "error of the reactions of joints, where unique; nan without a reference that has them");
-  text(
-      "work_error_max", [](const RunResult& r) { return r.work_error_max; },
-      "error of the work of drives and of forces without potential; nan without a reference of it");
   run.def_property_readonly(
       "reaction_errors",
       [](const Run& r) {

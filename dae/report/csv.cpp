@@ -1,4 +1,5 @@
 #include <momenta/dae/report/csv.h>
+#include <momenta/dae/study/run_quantities.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
@@ -27,118 +28,22 @@ std::string csv_line(const std::vector<std::string>& cells) {
 }
 
 std::string study_csv(const StudyResult& study) {
+  struct Cell {
+    std::string operator()(const std::string& text) const { return csv_cell(text); }
+    std::string operator()(double x) const { return round_trip(x); }
+    std::string operator()(long n) const { return std::to_string(n); }
+    std::string operator()(bool yes) const { return yes ? "true" : "false"; }
+  };
   const std::string unit = study.runs.empty() ? "m" : drift_unit(study.runs.front());
-  std::string text = csv_line({"scene",
-                               "form",
-                               "integrator",
-                               "gauge",
-                               "rtol",
-                               "atol",
-                               "step [s]",
-                               "end_time [s]",
-                               "project",
-                               "baumgarte_alpha [1/s]",
-                               "baumgarte_beta [1/s]",
-                               "beta [1/s]",
-                               "penalty",
-                               "kkt",
-                               "jacobian",
-                               "linear_solver",
-                               "status",
-                               "stopped_at [s]",
-                               "reason",
-                               "position_drift_max [" + unit + "]",
-                               "velocity_drift_max [" + unit + "/s]",
-                               "between_steps_max [" + unit + "]",
-                               "angle_drift_max [rad]",
-                               "angle_rate_drift_max [rad/s]",
-                               "angle_between_steps_max [rad]",
-                               "position_exponent",
-                               "position_exponent_half_range",
-                               "velocity_exponent",
-                               "velocity_exponent_half_range",
-                               "angle_exponent",
-                               "angle_exponent_half_range",
-                               "angle_rate_exponent",
-                               "angle_rate_exponent_half_range",
-                               "energy_error_max [J]",
-                               "position_error_max",
-                               "velocity_error_max",
-                               "force_error_max",
-                               "multiplier_error_max",
-                               "multiplier_difference_max",
-                               "momentum_error_max",
-                               "impulse_error_max",
-                               "effort_error_max",
-                               "reaction_error_max",
-                               "work_error_max",
-                               "steps",
-                               "rejected",
-                               "evaluations",
-                               "jacobians",
-                               "factorizations",
-                               "newton_iterations",
-                               "partitions",
-                               "cpu [s]",
-                               "wall [s]",
-                               "repeats"});
+  std::vector<std::string> head;
+  for (const RunQuantity& quantity : run_quantities())
+    if (quantity.column) head.push_back(quantity.heading(unit));
+  std::string text = csv_line(head);
   for (const RunResult& run : study.runs) {
-    const RunSettings& s = run.settings;
-    const Counters& c = run.counters;
-    text += csv_line({csv_cell(run.scene),
-                      csv_cell(s.form),
-                      csv_cell(s.integrator),
-                      csv_cell(s.gauge),
-                      round_trip(s.rtol),
-                      round_trip(s.atol),
-                      round_trip(s.step),
-                      round_trip(s.end_time),
-                      s.project ? "true" : "false",
-                      round_trip(s.baumgarte_alpha),
-                      round_trip(s.baumgarte_beta),
-                      round_trip(s.beta),
-                      round_trip(s.penalty),
-                      csv_cell(s.kkt),
-                      csv_cell(run.jacobian),
-                      csv_cell(run.linear_solver),
-                      csv_cell(run.status),
-                      round_trip(run.stopped_at),
-                      csv_cell(run.reason),
-                      round_trip(run.position_drift_max),
-                      round_trip(run.velocity_drift_max),
-                      round_trip(run.between_steps_max),
-                      round_trip(run.angle_drift_max),
-                      round_trip(run.angle_rate_drift_max),
-                      round_trip(run.angle_between_steps_max),
-                      round_trip(run.position_growth.exponent),
-                      round_trip(run.position_growth.half_range),
-                      round_trip(run.velocity_growth.exponent),
-                      round_trip(run.velocity_growth.half_range),
-                      round_trip(run.angle_growth.exponent),
-                      round_trip(run.angle_growth.half_range),
-                      round_trip(run.angle_rate_growth.exponent),
-                      round_trip(run.angle_rate_growth.half_range),
-                      round_trip(run.energy_error_max),
-                      round_trip(run.position_error_max),
-                      round_trip(run.velocity_error_max),
-                      round_trip(run.force_error_max),
-                      round_trip(run.multiplier_error_max),
-                      round_trip(run.multiplier_difference_max),
-                      round_trip(run.momentum_error_max),
-                      round_trip(run.impulse_error_max),
-                      round_trip(run.effort_error_max),
-                      round_trip(run.reaction_error_max),
-                      round_trip(run.work_error_max),
-                      std::to_string(c.steps),
-                      std::to_string(c.rejected),
-                      std::to_string(c.evaluations),
-                      std::to_string(c.jacobians),
-                      std::to_string(c.factorizations),
-                      std::to_string(c.newton_iterations),
-                      std::to_string(run.partitions),
-                      round_trip(run.cpu_s),
-                      round_trip(run.wall_s),
-                      std::to_string(run.repeats)});
+    std::vector<std::string> cells;
+    for (const RunQuantity& quantity : run_quantities())
+      if (quantity.column) cells.push_back(std::visit(Cell(), quantity.value(run)));
+    text += csv_line(cells);
   }
   return text;
 }

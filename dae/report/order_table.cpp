@@ -1,10 +1,10 @@
 #include <momenta/dae/measure/observed_order.h>
 #include <momenta/dae/report/order_table.h>
 #include <momenta/dae/report/run_label.h>
+#include <momenta/dae/study/run_quantities.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -46,34 +46,17 @@ std::string order_of_impulses(const Rungs& ladder) {
   return order_of(steps, changes);
 }
 
-/// Errors whose orders are told where any run has them.
-struct OrderedError {
-  const char* title;
-  double RunResult::*error;
-  bool always;
-};
-constexpr std::array<OrderedError, 9> ordered_errors{
-    {{"q", &RunResult::position_error_max, true},
-     {"u", &RunResult::velocity_error_max, true},
-     {"p", &RunResult::momentum_error_max, false},
-     {"λ of (3)", &RunResult::force_error_max, true},
-     {"reactions", &RunResult::reaction_error_max, false},
-     {"efforts", &RunResult::effort_error_max, false},
-     {"work", &RunResult::work_error_max, false},
-     {"own λ", &RunResult::multiplier_error_max, true},
-     {"∫λ", &RunResult::impulse_error_max, false}}};
-
 }  // namespace
 
 std::string order_table(const StudyResult& study) {
-  std::vector<OrderedError> told;
-  for (const OrderedError& column : ordered_errors)
-    if (column.always ||
+  std::vector<RunError> told;
+  for (const RunError& error : run_errors())
+    if (error.always ||
         std::any_of(study.runs.begin(), study.runs.end(),
-                    [&](const RunResult& run) { return !std::isnan(run.*column.error); }))
-      told.push_back(column);
+                    [&](const RunResult& run) { return !std::isnan(run.*error.largest); }))
+      told.push_back(error);
   std::vector<std::vector<std::string>> rows{{"observed order of", "", ""}};
-  for (const OrderedError& column : told) rows.front().emplace_back(column.title);
+  for (const RunError& error : told) rows.front().emplace_back(error.symbol);
   rows.front().emplace_back("σ");
   const auto first = ladders(study);
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
@@ -85,7 +68,7 @@ std::string order_table(const StudyResult& study) {
     const RunSettings& s = ladder.front()->settings;
     std::vector<std::string>& row = rows.emplace_back();
     row = {s.form + (s.project ? "+project" : ""), s.integrator, s.gauge.empty() ? "-" : s.gauge};
-    for (const OrderedError& column : told) row.push_back(order_of(ladder, column.error));
+    for (const RunError& error : told) row.push_back(order_of(ladder, error.largest));
     row.push_back(order_of_impulses(ladder));
   }
   return in_columns(rows) +

@@ -1,5 +1,6 @@
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/study/run_monitor.h>
+#include <momenta/dae/study/run_quantities.h>
 
 #include <algorithm>
 #include <cmath>
@@ -236,17 +237,8 @@ void RunMonitor::finish() {
     result_.last_pose = apart_->in_units(now_.q);
   result_.multiplier_difference_max = largest(s.multiplier_difference);
   result_.reaction_errors = errors_.of_reactions();
-  if (request_.reference && result_.status == "done" && errors_.compared() > 0) {
-    result_.position_error_max = largest(s.position_error);
-    result_.velocity_error_max = largest(s.velocity_error);
-    result_.force_error_max = largest(s.force_error);
-    result_.multiplier_error_max = largest(s.multiplier_error);
-    result_.momentum_error_max = largest(s.momentum_error);
-    result_.impulse_error_max = largest(s.impulse_error);
-    result_.effort_error_max = largest(s.effort_error);
-    result_.reaction_error_max = largest(s.reaction_error);
-    result_.work_error_max = largest(s.work_error);
-  }
+  if (request_.reference && result_.status == "done" && errors_.compared() > 0)
+    for (const RunError& error : run_errors()) result_.*error.largest = largest(s.*error.series);
   if (mechanism_.m() == 0) return;
   const bool lengths = mechanism_.has_lengths();
   result_.position_drift_max = largest(s.position_drift);

@@ -3,10 +3,13 @@
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/study/run_quantities.h>
 #include <unit/page/synthetic_study.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -145,6 +148,23 @@ TEST(Csv, StudyHasOneRowPerRunAndEachCellUnderItsName) {
   for (const char* name : {"steps", "rejected", "evaluations", "jacobians", "factorizations",
                            "newton_iterations", "repeats"})
     EXPECT_EQ(cell(0, name), std::to_string(++expected)) << name;
+}
+
+TEST(ResultsPage, NamesEveryQuantity) {
+  std::ifstream file(std::string(MOMENTA_SOURCE_DIR) + "/docs/reference/results.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  std::string columns;
+  for (const RunQuantity& quantity : run_quantities()) {
+    if (quantity.column) columns += (columns.empty() ? "`" : ", `") + quantity.heading("m") + "`";
+    if (!quantity.pointer) continue;
+    std::string key = quantity.pointer + 1;
+    std::replace(key.begin(), key.end(), '/', '.');
+    const std::string last = key.substr(key.find('.') + 1);
+    EXPECT_TRUE(page.find("`" + key + "`") != std::string::npos ||
+                (last != key && page.find("`." + last + "`") != std::string::npos))
+        << key;
+  }
+  EXPECT_NE(page.find("\n" + columns + ".\n"), std::string::npos) << columns;
 }
 
 }  // namespace
