@@ -57,11 +57,11 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
     double spent = 0;
     bool over = false;
   };
-  if (has_rigid_stops(mechanism.scene())) return;  // timed runs know no impacts
   std::vector<Times> all(runs.size());
-  const std::size_t rounds = request.how == Timing::rounds ? most_rounds
-                             : request.how == Timing::once ? 1
-                                                           : 0;
+  const std::size_t rounds = has_rigid_stops(mechanism.scene()) ? 0  // timed runs know no impacts
+                             : request.how == Timing::rounds    ? most_rounds
+                             : request.how == Timing::once      ? 1
+                                                                : 0;
   const auto measured = [&] {
     for (std::size_t round = 0; round < rounds; ++round)
       for (std::size_t i = 0; i < runs.size(); ++i) {

@@ -82,6 +82,18 @@ TEST_F(TimedStudy, SaysHowOftenItWasTimed) {
   EXPECT_EQ(rounds[2].repeats, failed.repeats);
 }
 
+TEST_F(TimedStudy, HasNoTimesOfRigidStopsWhereNoneAreAskedFor) {
+  Scene scene = mechanism.scene();
+  scene.joints[0].limits = {{-100.0, 100.0}};
+  scene.joints[0].restitution = 0.5;
+  auto none = runs, once = runs;
+  time_runs(Mechanism(scene), start, none, {.how = Timing::none, .going_on = {}, .at_step = {}});
+  time_runs(Mechanism(scene), start, once, {.how = Timing::once, .going_on = {}, .at_step = {}});
+  EXPECT_TRUE(std::isnan(none[0].cpu_s));
+  EXPECT_EQ(once[0].cpu_s, runs[0].cpu_s);
+  EXPECT_EQ(once[0].repeats, 0);
+}
+
 TEST_F(TimedStudy, TakesNoTimeTwice) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("momenta_timing_" + std::to_string(getpid()));
