@@ -1,9 +1,7 @@
 #pragma once
-// What public calls take and give. A list of a wrong size is a mistake of the caller's and would
-// corrupt memory: it is thrown, in one sentence. Of numbers that are not finite `failure` says
-// which they are: calls that return bool return false, others throw. A size is one comparison, and
-// all numbers that a call takes, or gives, are one more (scalar/all_finite.h): the first that is
-// not finite is looked for only then.
+// Checks of arguments and results of public calls. A list of wrong size would corrupt memory: it is
+// thrown, in one sentence. Where a number is not finite, `failure` says which: calls that return
+// bool return false, others throw. All numbers of a call cost one comparison (scalar/all_finite.h).
 
 #include <momenta/core/scalar/all_finite.h>
 
@@ -29,7 +27,7 @@ inline void expect_size(const char* call, const char* name, Eigen::Index found,
     throw_wrong_size(call, name, found, expected);
 }
 
-/// The sentence for a number that is none.
+/// The sentence for a number that is not finite.
 inline std::string not_finite(const std::string& name, Eigen::Index at, double value) {
   return name + "[" + std::to_string(at) + "] is " +
          (std::isnan(value) ? "not a number"
@@ -38,7 +36,6 @@ inline std::string not_finite(const std::string& name, Eigen::Index at, double v
          ", expected a finite number";
 }
 
-/// The sentence for a result that is not finite.
 inline constexpr const char* too_large =
     "the result is not finite, expected smaller numbers to find it from";
 
@@ -54,8 +51,8 @@ struct Numbers {
   std::size_t n = 0;
 };
 
-/// The sentence for the first number of these that is not finite. Lists by value, here alone: those
-/// of the calls that ask stay in registers.
+/// The sentence for the first number that is not finite. Lists by value: those of callers stay in
+/// registers.
 [[gnu::cold, gnu::noinline]] inline std::string first_not_finite(double t, Numbers a, Numbers b,
                                                                  Numbers c, Numbers d) {
   if (!std::isfinite(t)) return "t is not finite, expected a time in seconds";
@@ -66,8 +63,8 @@ struct Numbers {
   return "";
 }
 
-/// Whether t [s] and all numbers that a call is given are finite. `failure` names the first that is
-/// not; else it is empty. Inlined, as of lists that are not there nothing is left then.
+/// Whether t [s] and all given numbers are finite; else `failure` names the first that is not.
+/// Inlined, so that absent lists cost nothing.
 [[gnu::always_inline]] inline bool given_finite(std::string& failure, double t, const Numbers& a,
                                                 const Numbers& b = {}, const Numbers& c = {},
                                                 const Numbers& d = {}) {
@@ -80,7 +77,7 @@ struct Numbers {
   failure = first_not_finite(t, a, b, c, d);
   return false;
 }
-/// The same, thrown: of calls that return what they find.
+/// The same for calls that return their result: throws.
 inline void expect_given_finite(const char* call, std::string& failure, double t, const Numbers& a,
                                 const Numbers& b = {}, const Numbers& c = {},
                                 const Numbers& d = {}) {
@@ -88,8 +85,7 @@ inline void expect_given_finite(const char* call, std::string& failure, double t
     throw std::invalid_argument(std::string(call) + ": " + failure);
 }
 
-/// Whether all numbers of what was found are finite; else `failure` says that they are not. Lists
-/// have data() and size().
+/// Whether all results are finite; else `failure` says so. Lists have data() and size().
 template <class... Lists>
 [[gnu::always_inline]] inline bool found_finite(std::string& failure, const Lists&... lists) {
   FiniteSum sum;

@@ -1,6 +1,6 @@
 #pragma once
 // Centroidal momentum: mass, centre of mass, linear and angular momentum of all bodies together, in
-// ground axes. Motion prescribed by drives is included. The sums: centroidal_sums.h.
+// ground axes. Prescribed motion is included. The sums: centroidal_sums.h.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>
@@ -17,9 +17,9 @@ struct Centroidal {
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< [kg m²/s], about the origin
 };
 
-/// Computes centroidal quantities, with its own model and workspace: one object per thread. It is
-/// always spatial: where the bodies of a planar scene lie at different heights, the angular
-/// momentum has components in the plane too.
+/// Computes centroidal quantities, with its own model and workspace: one object per thread. Always
+/// spatial: with bodies at different heights, the angular momentum of a planar scene has components
+/// in the plane too.
 class CentroidalSweep {
  public:
   /// Copies what it needs from both. O(bodies).
@@ -27,7 +27,7 @@ class CentroidalSweep {
   ~CentroidalSweep();
   /// Movable. A moved-from sweep may only be destroyed or assigned to.
   CentroidalSweep(CentroidalSweep&&) noexcept;
-  /// As the move constructor.
+  /// Move assignment.
   CentroidalSweep& operator=(CentroidalSweep&&) noexcept;
 
   /// The quantities at (t, q, u); q has nq numbers, u has nv. O(bodies), no allocation.

@@ -20,7 +20,7 @@ struct CentroidalSums {
   Vec3<S> moment, linear, angular;  ///< m c, L, H; ground axes
 };
 
-/// At (t, q, u). Two outward sweeps, O(bodies).
+/// The sums at (t, q, u): two outward sweeps, O(bodies).
 template <class S>
 CentroidalSums<S> centroidal_sums(Workspace<Spatial, S>& w, const S& t, const S* q, const S* u) {
   poses_outward(w, t, q, true);

@@ -21,12 +21,12 @@ int body_of(const Tree& tree, int rate) {
   return -1;
 }
 
-/// Σ m, Σ m r and Σ (tr I + m r²) about a body's origin of all that it carries.
+/// Σ m, Σ m r and Σ (tr I + m r²) of all that a body carries, about its origin.
 struct Carried {
   double mass = 0, first = 0, second = 0;
 };
 
-/// How far the joint's coordinate takes the body's origin from its place.
+/// How far the joint's coordinate shifts the body's origin.
 double slide(const Tree::Body& b, const double* q) {
   if (b.nq == 7) return Eigen::Vector3d(q[b.q], q[b.q + 1], q[b.q + 2]).norm();
   if (b.nq != 1 || b.law) return 0;
@@ -34,7 +34,7 @@ double slide(const Tree::Body& b, const double* q) {
   return slides ? std::abs((b.kind == JointKind::helical ? b.pitch : 1) * q[b.q]) : 0;
 }
 
-/// s (nv). Of a user joint, whose rates say nothing of lengths, and of a Lagrangian |M_jj|.
+/// s (nv); |M_jj| for a Lagrangian and for user joints, whose rates say nothing of lengths.
 Eigen::VectorXd sizes(const Tree& tree, const double* q, const Eigen::VectorXd& diagonal) {
   Eigen::VectorXd size = diagonal.cwiseAbs();
   std::vector<Carried> all(tree.bodies.size());
@@ -57,10 +57,10 @@ Eigen::VectorXd sizes(const Tree& tree, const double* q, const Eigen::VectorXd& 
   return size;
 }
 
-/// Velocity and angular velocity of a body's frame in its own axes, by unit rates of a joint.
+/// Velocity and angular velocity of a body's frame, in its own axes, at unit rates of a joint.
 using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Of the frame that a joint carries; a user joint's are not known.
+/// The motions of the frame on a joint; unknown for user joints.
 Motions own_motions(const Tree::Body& b) {
   Motions g = Motions::Zero(6, b.nv);
   if (b.nv == 6) return Motions::Identity(6, 6);
@@ -73,7 +73,7 @@ Motions own_motions(const Tree::Body& b) {
   return g;
 }
 
-/// Mᵦ of one body by these motions of its frame.
+/// Joint-space mass matrix of one body under motions g of its frame.
 Eigen::MatrixXd energy(const Tree::Body& b, const Motions& g) {
   const Eigen::MatrixXd turns = g.bottomRows(3);
   Eigen::MatrixXd com = g.topRows(3);
@@ -128,14 +128,14 @@ std::vector<bool> has_own_inertia(const Tree& tree) {
   return has;
 }
 
-/// "its axis" of one coordinate, or what joints of several have.
+/// Where a joint lacks inertia: its one axis, or a direction of several.
 const char* along(const Tree::Body& b) {
   if (b.nv > 1 || b.law)
     return b.kind == JointKind::spherical ? "about some axis through it" : "in some direction";
   return b.kind == JointKind::prismatic ? "along its axis" : "about its axis";
 }
 
-/// ", as at rates 1 of joint 'a', -0.5 of joint 'b' no mass moves"; empty where it is one rate.
+/// ", as at rates 1 of joint 'a', -0.5 of joint 'b' no mass moves"; empty for a single rate.
 std::string rates_in_words(const Tree& tree, const Eigen::VectorXd& motion) {
   constexpr double takes_part = 1e-6;
   if (motion.size() == 0) return "";
@@ -161,7 +161,7 @@ std::string rates_in_words(const Tree& tree, const Eigen::VectorXd& motion) {
   return one_rate ? "" : words + " no mass moves";
 }
 
-/// Of each joint of the scene among them one body of the tree.
+/// One body of the tree for each joint of the scene among `joints`.
 std::vector<int> one_a_joint(const Tree& tree, const std::vector<MasslessJoint>& joints) {
   std::vector<int> bodies;
   for (const MasslessJoint& joint : joints) {

@@ -5,9 +5,9 @@
 //     OpenChain chain(read_scene("pendulum.toml"));
 //     chain.rates(t, q, p, qdot, pdot);          // (9a), (9b): two sweeps, O(bodies)
 //
-// q: size nq, u and p: size nv, by joint as JointSpec says; SI units. The kernel, planar or
-// spatial, is chosen by the plan. One object serves one thread: it owns the workspace. No call
-// allocates unless it returns a matrix or a list.
+// q: size nq, u and p: size nv, by joint as JointSpec says; SI units. The plan chooses the planar
+// or spatial kernel. One object serves one thread. No call allocates unless it returns a matrix or
+// a list.
 //
 // An argument of wrong size throws std::invalid_argument with one sentence. Where an input or a
 // result is not finite, calls that return bool return false and failure() names it; other calls
@@ -54,25 +54,25 @@ struct Reaction {
   Eigen::Vector3d torque;  ///< [N m]; planar kernel: normal to the plane only
 };
 
-/// Forward dynamics of an open chain (any tree), with its workspace: one object per thread. Where a
-/// call returns bool, false means that there is no result; failure() then says why.
+/// Forward dynamics of an open chain (any tree), with its workspace: one object per thread. Calls
+/// that return false have no result; failure() says why.
 class OpenChain {
  public:
-  /// `level`: x86-64 instruction level of the compiled recursion: 1, 3 (AVX2) or 4 (AVX-512). Where
-  /// the machine or the library does not have it, the next lower one is taken; 0 takes the best.
-  /// `branches_side_by_side`: the spatial kernel sweeps subtrees of revolute joints of one shape
-  /// side by side in vector registers (kernel/branches/branches.h); results differ by rounding.
+  /// `level`: x86-64 instruction level of the compiled recursion: 1, 3 (AVX2) or 4 (AVX-512). Else
+  /// the next lower one of machine and library; 0: the best. `branches_side_by_side`: the spatial
+  /// kernel sweeps subtrees of revolute joints of one shape side by side in vector registers
+  /// (kernel/branches/branches.h); results differ by rounding.
   explicit OpenChain(const Scene& scene, Algebra algebra = Algebra::automatic, int level = 0,
                      bool branches_side_by_side = true);
   ~OpenChain();
   /// Movable. A moved-from chain may only be destroyed or assigned to.
   OpenChain(OpenChain&&) noexcept;
-  /// As the move constructor.
+  /// Move assignment.
   OpenChain& operator=(OpenChain&&) noexcept;
 
   /// Bodies in the order of the sweeps, with the places of their joints in q and u.
   const Tree& tree() const;
-  /// What every evaluation computes, and what it leaves out.
+  /// The plan: what every evaluation computes and leaves out.
   const Plan& plan() const;
   int nq() const { return tree().nq; }  ///< size of q and q̇
   int nv() const { return tree().nv; }  ///< size of u, p and their rates
@@ -87,14 +87,13 @@ class OpenChain {
   /// ṗ.
   bool rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, const ConstVectorRef& tau,
              VectorRef qdot, VectorRef pdot);
-  /// The same for many states at one time t: q (nq × states), p (nv × states). The states are side
-  /// by side in the lanes of vector registers; where forces act between points of bodies, they are
-  /// evaluated one by one. False when a state has no rates: its columns are NaN, the columns of all
-  /// other states are right, and failure() names the first such state. `threads`: how many threads
-  /// share the states, each with its own workspace; the results are the same bit by bit. The
-  /// threads start and end with the call: 8 µs or more and a workspace each. Scenes with user
-  /// joints or with forces between points of bodies use the caller's thread alone. @throws
-  /// std::invalid_argument for fewer than one thread.
+  /// The same for many states at one time t: q (nq × states), p (nv × states). States share vector
+  /// registers, a lane each; with forces between points of bodies they are evaluated one by one.
+  /// False when a state has no rates: its columns are NaN, all others are right, and failure()
+  /// names the first such state. `threads`: threads that share the states; results are the same bit
+  /// by bit. They start and end with the call: 8 µs or more and a workspace each. Scenes with user
+  /// joints or forces between points use the caller's thread alone. @throws std::invalid_argument
+  /// for fewer than one thread.
   bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
                        StatesRef pdot, int threads = 1);
   /// The same with τ (nv × states), joint forces in addition to those of the scene.
@@ -109,10 +108,10 @@ class OpenChain {
   /// M⁻¹ x (nv), without prescribed motion: eqs. (44), (45) without Ω_t. False as for rates().
   bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                           VectorRef result);
-  /// The same at the place of the last call of rates(), velocities() or inverse_mass_times(), for
-  /// the price of two sweeps without what M* costs; after rates() and velocities() of a tree that
-  /// is swept in branches side by side, the first one takes an evaluation. False also where none
-  /// of these calls came before, or the last of them returned false.
+  /// The same at the place of the last rates(), velocities() or inverse_mass_times(): two sweeps
+  /// without the cost of M*. Where branches are swept side by side, the first call after rates() or
+  /// velocities() takes an evaluation. False also where none of these calls came before, or the
+  /// last one returned false.
   bool inverse_mass_times(const ConstVectorRef& x, VectorRef result);
   /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, at about the cost of two
   /// in doubles. False as for rates().
@@ -140,8 +139,8 @@ class OpenChain {
 
   /// T, V and H at (t, q, u), O(bodies).
   Energies energies(double t, const ConstVectorRef& q, const ConstVectorRef& u);
-  /// Mass, centre of mass, linear and angular momentum of all bodies together, in ground axes, from
-  /// (t, q, p): u by (45), then Σ M Ω, prescribed motion included. O(bodies). False as for rates().
+  /// Centroidal quantities from (t, q, p): u by (45), then Σ M Ω, prescribed motion included.
+  /// O(bodies). False as for rates().
   bool centroidal(double t, const ConstVectorRef& q, const ConstVectorRef& p, Centroidal& all);
   /// Joint reactions at (t, q, u), with the accelerations from the forward dynamics: eq. (28),
   /// O(bodies).

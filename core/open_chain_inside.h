@@ -1,6 +1,5 @@
 #pragma once
-// What an OpenChain holds: the tree, its plan and the kernel the plan has chosen. For the sources
-// of OpenChain alone.
+// The inside of an OpenChain, for its sources alone: tree, plan and the kernel of the plan.
 
 #include <momenta/core/arguments.h>
 #include <momenta/core/centroidal_sums.h>
@@ -22,7 +21,7 @@ namespace momenta {
 template <class Space>
 struct Kernel {
   using Links = decltype(build_links(std::declval<const Model<Space>&>()));
-  // Links, branches, sweeps and workspace point at the model, so it stays at one address.
+  // Links, branches, sweeps and workspace point at the model: it must not move.
   Kernel(Model<Space> m, int level, [[maybe_unused]] bool branches_side_by_side)
       : model(std::make_unique<Model<Space>>(std::move(m))),
         links(std::make_unique<Links>(build_links(*model))),
@@ -48,16 +47,17 @@ struct OpenChain::Inside {
   Tree tree;
   Plan plan;
   std::variant<Kernel<Planar>, Kernel<Spatial>> kernel;
-  std::optional<Scene> flat;  ///< of a planar kernel: `in_space` is made of it when asked for
+  std::optional<Scene>
+      flat;  ///< scene of a planar kernel; `in_space` is made from it when first needed
   std::unique_ptr<CentroidalSweep> in_space;
   Eigen::VectorXd u, p;  // scratch, nv
   bool has_user_joints = false;
   bool placed = false;  ///< the sweeps hold, or can find, M* of the last call's place
   int singular = -1;
-  Eigen::Index failed_state = -1;  ///< of the last batch
+  Eigen::Index failed_state = -1;  ///< first state of the last batch that failed; −1: none
   double failed_t = 0;             ///< where the last call failed for want of inertia [s]
   Eigen::VectorXd failed_q;
-  /// What of the last call's numbers is none, given or found; empty: all are.
+  /// The sentence on a number of the last call that is not finite, given or found; empty: none.
   std::string not_a_number;
 
   Inside(Tree t, Plan pl, const Scene& from, int level, bool branches_side_by_side)
@@ -73,13 +73,13 @@ struct OpenChain::Inside {
     for (const auto& b : tree.bodies) has_user_joints |= b.kind == JointKind::user;
   }
 
-  /// That a joint without inertia was met at (t, q), coordinates `stride` apart.
+  /// Records where a joint without inertia was met: (t, q), coordinates `stride` apart.
   void note_place(double t, const double* q, Eigen::Index stride = 1) {
     failed_t = t;
     failed_q = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>(
         q, tree.nq, Eigen::InnerStride<>(stride));
   }
-  /// All joints without inertia there.
+  /// All joints without inertia at the recorded place.
   template <class K>
   std::vector<MasslessJoint> massless(K& k) {
     poses_outward(k.w, failed_t, failed_q.data(), false);
@@ -140,7 +140,7 @@ struct OpenChain::Inside {
     return ok;
   }
 
-  /// What a call on one state left behind.
+  /// Records the outcome of a call on one state.
   template <class Sweeps>
   bool noted_one(const Sweeps& sweeps, double t, const double* q, bool ok) {
     singular = ok ? -1 : sweeps.singular_joint();
@@ -148,8 +148,8 @@ struct OpenChain::Inside {
     if (!ok) note_place(t, q);
     return ok;
   }
-  /// Many states at t by `run`, consecutive ones on each thread. Parts end where packs do: whatever
-  /// shares a register shares it on any number of threads.
+  /// Runs many states at t, consecutive ones on each thread. Parts end where packs do: results do
+  /// not depend on the number of threads.
   template <class K, class Run>
   bool batch(K& k, double t, int threads, const States& all, Run&& run) {
     if (take_batch(k, threads, all, std::forward<Run>(run))) return true;
@@ -191,7 +191,7 @@ struct OpenChain::Inside {
   bool accelerations_of_states(OpenChain& chain, double t, const ConstStatesRef& q,
                                const ConstStatesRef& rates, const ConstStatesRef* tau,
                                StatesRef udot, int threads);
-  /// Forces between bodies: state by state.
+  /// State by state, for scenes with forces between bodies.
   template <class F>
   bool one_by_one(Eigen::Index count, F&& f) {
     Eigen::Index failed = -1;

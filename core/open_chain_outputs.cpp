@@ -1,5 +1,4 @@
-// What a chain at a state is asked for beside its motion: energies, sums over all bodies,
-// reactions, mass matrix, poses.
+// Outputs of a chain beside its motion: energies, sums over bodies, reactions, mass matrix, poses.
 
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
@@ -15,8 +14,8 @@ Eigen::Vector3d vector(const Vec3<double>& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// F_K in the scene's axes of body k: the model's frame may be turned and shifted along the joint's
-/// z.
+/// F_K in the scene's axes of body k: the model's frame may be turned about and shifted along the
+/// joint's z.
 Reaction reaction_of(const Tree::Body& body, const Model<Spatial>& model,
                      const Workspace<Spatial, double>&, std::size_t k,
                      const Spatial::Force<double>& f) {

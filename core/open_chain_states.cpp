@@ -1,5 +1,4 @@
-// Many states at once: in the lanes of vector registers, shared among threads, or one by one where
-// forces act between points of bodies.
+// Many states at once: in lanes of vector registers, shared among threads, or one by one.
 
 #include <momenta/core/open_chain_inside.h>
 
@@ -69,7 +68,7 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
   return inside_->told_of_state(all, q, "p", p, "tau", tau);
 }
 
-/// Whose `tau` may be null.
+/// `tau` may be null.
 bool OpenChain::Inside::accelerations_of_states(OpenChain& chain, double t, const ConstStatesRef& q,
                                                 const ConstStatesRef& rates,
                                                 const ConstStatesRef* tau, StatesRef udot,

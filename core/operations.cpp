@@ -9,7 +9,7 @@ namespace {
 
 template <class Space>
 OperationCount count(const Tree& tree, const Model<Space>& model, Recursion recursion) {
-  // Any state will do: only zeros and ones of the model are folded, never those of a state.
+  // Any state will do: only zeros and ones of the model are folded.
   const auto variables = [](Eigen::Index n, const auto& value) {
     std::vector<Counted> x;
     for (Eigen::Index i = 0; i < n; ++i) x.push_back(Counted::variable(value(i)));

@@ -1,6 +1,6 @@
 #pragma once
-// The plan of a scene: what every evaluation computes and what it leaves out. It is decided once;
-// `momenta check` prints it.
+// The plan of a scene: what every evaluation computes and leaves out. Decided once; `momenta check`
+// prints it.
 
 #include <momenta/core/tree/tree.h>
 
@@ -11,14 +11,14 @@
 
 namespace momenta {
 
-/// Which kernel evaluates a scene.
+/// The kernel that evaluates a scene.
 enum class Algebra {
-  automatic,  ///< planar where the scene is
-  planar,     ///< three components: the scene moves in a plane
-  spatial     ///< six
+  automatic,  ///< planar where the scene is planar
+  planar,     ///< three components
+  spatial     ///< six components
 };
 
-/// What evaluations of a scene compute, and what they leave out.
+/// The decisions of a plan.
 struct Plan {
   bool planar = false;            ///< 3-component algebra
   std::string planar_reason;      ///< why not, when spatial
@@ -31,7 +31,7 @@ struct Plan {
   /// The scene has loops: velocities come from (7), not from the sweeps. Mechanism sets it;
   /// make_plan() does not.
   bool loops = false;
-  Eigen::Matrix3d basis = Eigen::Matrix3d::Identity();  ///< of the plane
+  Eigen::Matrix3d basis = Eigen::Matrix3d::Identity();  ///< axes of the plane
 
   /// "kernel: planar, plane normal to z", …: one pair per decision.
   std::vector<std::pair<std::string, std::string>> lines() const;

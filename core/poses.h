@@ -1,6 +1,6 @@
 #pragma once
-// Where the bodies of an open chain are and how they move, and nothing else of it: for pictures and
-// measures of mechanisms, whose loops are left out.
+// Poses and velocities of the bodies of an open chain, for pictures and measures of mechanisms,
+// whose loops are left out.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>
@@ -10,10 +10,10 @@
 
 namespace momenta {
 
-/// A body as its scene has it, in ground axes.
+/// Motion of a body, in the scene's frame of it and ground axes.
 struct BodyMotion {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< [m]
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();             ///< of its origin [m/s]
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();             ///< velocity of its origin [m/s]
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();         ///< [rad/s]
 };
 
@@ -31,7 +31,7 @@ class Poses {
 
   /// Takes the state (t, q, u), q of nq and u of nv numbers. O(bodies)
   void move(double t, const double* q, const double* u);
-  /// Of a body of the tree (Tree::body()). @pre move()
+  /// The motion of a body of the tree (Tree::body()). @pre move()
   BodyMotion motion(int body) const;
 
  private:

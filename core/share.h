@@ -4,8 +4,8 @@
 
 namespace momenta {
 
-/// Calls work(i) for i < count on several threads, each taking the next i that nobody has taken.
-/// What a call throws ends the others at their next i and is thrown again.
+/// Calls work(i) for i < count on several threads, each taking the next free i. An exception of a
+/// call ends the others at their next i and is thrown again.
 void share(int threads, std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace momenta

@@ -1,8 +1,7 @@
 #pragma once
-// A user joint: a joint that a program defines by one formula, the pose of the child's joint frame
-// in the parent's joint frame as a function of time and n = 1 … 6 coordinates, with q̇ = u. Dual
-// numbers give everything else from it exactly (kernel/user_motion.h): E and Ω_t of (13), Ė and
-// dΩ_t/dt.
+// A user joint: a program gives the pose of the child's joint frame in the parent's as a formula of
+// time and n = 1 … 6 coordinates, with q̇ = u. Dual numbers give the rest exactly
+// (kernel/user_motion.h): E and Ω_t of (13), Ė and dΩ_t/dt.
 //
 //     struct Crank {  // a revolute joint at the end of an arm of 0.2 m
 //       template <class S>
@@ -16,7 +15,7 @@
 //
 // S has the operators + − × ÷, the functions sin, cos and sqrt in its namespace, a constructor from
 // double, and comparisons of values. The matrix must be a rotation for all t and q; validate()
-// checks it at the start. All chains made from the scene share the formula, so it must not change.
+// checks it at the start. All chains of the scene share the formula: it must not change.
 
 #include <momenta/core/kernel/user_motion.h>
 
@@ -31,7 +30,7 @@ namespace momenta {
 template <class S>
 struct JointPose {
   Mat3<S> rotation;  ///< columns: the child's joint axes in the parent's joint frame
-  Vec3<S> position;  ///< of the child's joint point in the parent's joint frame [m]
+  Vec3<S> position;  ///< the child's joint point in the parent's joint frame [m]
 };
 
 /// The rotation by `angle` about a unit vector: cos + (1 − cos) a aᵀ + sin ã.
@@ -53,8 +52,8 @@ Mat3<S> turn_about(const Vec3<S>& a, const S& angle) {
 class UserJoint final : public UserFormula {
  public:
   /// `formula(t, q)` gives a `JointPose<S>` for any S; q has `coordinates` numbers. `lengths`:
-  /// which of them, from 0 on, are lengths [m]; the others are angles [rad]. Units of results and
-  /// the scales by which solutions are judged follow; others than 0 … n − 1 mean nothing.
+  /// indices of the lengths [m]; the others are angles [rad]. Units of results and scales of
+  /// solutions follow; other indices mean nothing.
   template <class Formula>
   UserJoint(int coordinates, Formula formula, std::initializer_list<int> lengths = {})
       : coordinates_(coordinates),
@@ -69,8 +68,7 @@ class UserJoint final : public UserFormula {
   /// The pose at (t, q): the rotation, nine numbers by columns, and the position, three numbers.
   void pose(double t, const double* q, double* rotation, double* position) const override;
 
-  /// What the recursions take from the formula at m.t and m.q: pose, E, Ω_t and the rates of E and
-  /// Ω_t along u.
+  /// Pose, E, Ω_t and the rates of E and Ω_t along u, at m.t and m.q.
   void move(const double* u, UserMotion<double>& m) const override;
   /// The same with one directional derivative.
   void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const override;
@@ -111,7 +109,7 @@ class UserJoint final : public UserFormula {
   };
 
   int coordinates_;
-  unsigned lengths_ = 0;  ///< bit i: of coordinate i
+  unsigned lengths_ = 0;  ///< bit i: coordinate i is a length
   std::shared_ptr<const Law> law_;
 };
 

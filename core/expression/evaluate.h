@@ -11,7 +11,7 @@ namespace momenta {
 
 namespace formula {
 
-/// One instruction, of the values of those before it.
+/// Value of one instruction from those before it on the line.
 template <class S>
 inline void execute(const Expression::Instruction& in, const S* x, const S* line, S& y) {
   using O = Operation;
@@ -97,8 +97,8 @@ inline void execute(const Expression::Instruction& in, const S* x, const S* line
 
 }  // namespace formula
 
-/// The values of a formula at x₀, x₁, … to `values`; `line` has room for its tape. Numbers of any
-/// scalar that has formula::Functions, compared by their values. No allocation. O(tape)
+/// Writes the values of a formula at x₀, x₁, … to `values`; `line` has room for its tape. S: any
+/// scalar with formula::Functions, compared by value. No allocation. O(tape)
 template <class S>
 void evaluate(const Expression& formula, const S* x, S* line, S* values) {
   if constexpr (std::is_same_v<S, double>) {

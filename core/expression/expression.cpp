@@ -11,7 +11,7 @@
 namespace momenta {
 namespace {
 
-/// The variables of a formula by their names.
+/// Variables by a list of their names.
 class Listed final : public FormulaNames {
  public:
   explicit Listed(std::span<const std::string> names) : names_(names) {}
@@ -23,7 +23,7 @@ class Listed final : public FormulaNames {
   std::string expected(std::string_view name) const override {
     std::vector<std::string_view> near(names_.begin(), names_.end());
     near.push_back("pi");
-    if (name.ends_with(".dot")) {  // of files of equations
+    if (name.ends_with(".dot")) {  // as files of equations have it
       const std::string rate = "der(" + std::string(name.substr(0, name.size() - 4)) + ")";
       if (std::find(near.begin(), near.end(), rate) != near.end())
         return "; did you mean " + reading::in_quotes(rate) + "?";

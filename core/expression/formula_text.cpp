@@ -10,15 +10,15 @@ namespace momenta::formula {
 namespace {
 
 constexpr double longest_without = 20'000;  // characters of a text without definitions
-constexpr int deepest_without = 100;        // operations within each other
-constexpr int deepest_between = 40;         // the same from definition to definition
+constexpr int deepest_without = 100;        // nested operations
+constexpr int deepest_between = 40;         // nested operations between definitions
 
-/// How tightly an operation holds, as in the grammar of expression.h.
+/// Precedence, as in the grammar of expression.h.
 enum Level { or_level, and_level, not_level, comparison, sum, product, sign, power, primary };
 
 struct Sign {
   const char* text;
-  Level level, left, right;  ///< its own, and what its operands need at least
+  Level level, left, right;  ///< precedence of the operation, least ones of its operands
 };
 
 Sign sign_of(Operation operation) {
@@ -85,7 +85,7 @@ class Text {
     for (int k = 0; k < operands_of(in.operation); ++k) act(operands[k]);
   }
 
-  /// Which instructions are written by definitions: none where the text stays short and flat.
+  /// Marks the instructions written as definitions; none where the text stays short and flat.
   std::vector<char> definitions(int output) const {
     std::vector<char> defined(tape_.size(), 0);
     std::vector<double> length(tape_.size(), 0);

@@ -1,5 +1,5 @@
 #pragma once
-// A tape as the text that is parsed to it.
+// Text of a tape that parses to the same tape.
 
 #include <momenta/core/expression/instruction.h>
 
@@ -9,9 +9,9 @@
 
 namespace momenta::formula {
 
-/// The formula of instruction `output`, with these names for its variables. A text that would be
-/// long, since what is used twice stands twice, or deeper than the parser goes, has definitions
-/// "s1 := …; " before it. @throws std::logic_error where a number is infinite or none. O(tape)
+/// The formula of instruction `output`, with these names for its variables. Where repeated parts
+/// make it long, or depth exceeds the parser's, it begins with definitions "s1 := …; ". @throws
+/// std::logic_error where a number is not finite. O(tape)
 std::string text_of(const std::vector<Instruction>& tape, int output,
                     std::span<const std::string> names);
 

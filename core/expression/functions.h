@@ -1,5 +1,5 @@
 #pragma once
-// The functions of formulas in every scalar. Each has its derivative from its argument x and its
+// The functions of formulas in every scalar. Each derivative follows from the argument x and the
 // value y,
 //
 //   exp' = y,  log' = 1/x,  tan' = 1 + y²,  tanh' = 1 − y²,  asin' = 1/√(1 − x²),  atan' = 1/(1 +
@@ -25,7 +25,7 @@
 
 namespace momenta::formula {
 
-/// The functions of one number and of two, of a scalar S; and whether a number is exactly zero.
+/// The functions of one and two numbers of a scalar S, and whether a number is exactly zero.
 template <class S>
 struct Functions;
 
@@ -49,7 +49,7 @@ S whole_power(const S& x, int n) {
   return n < 0 ? S(1.0) / result : result;
 }
 
-/// One of two. Sparse duals hang on both whichever it is, so that a pattern holds at every state.
+/// One of two. A sparse dual depends on both, so that its pattern holds at every state.
 template <class S>
 const S& chosen(bool first, const S& a, const S& b) {
   return first ? a : b;
@@ -163,7 +163,7 @@ struct Functions<Dual<S, N>> {
   static Dual<S, N> of(Operation o, const Dual<S, N>& a, const Dual<S, N>& b) {
     const S y = function(o, a.a, b.a);
     const auto [by_a, by_b] = slopes(o, a.a, b.a, y);
-    // What does not change has no share: of a^2.5 not log a, which a negative a has not.
+    // A constant has no share: log a of a^2.5 has no value at negative a.
     const S none(0.0);
     const S along_a = is_constant(a) ? none : by_a, along_b = is_constant(b) ? none : by_b;
     Dual<S, N> r;
@@ -187,8 +187,8 @@ struct Functions<LocalDual> {
   }
 };
 
-/// y_1, y_2, … from y_0 by y' = Σ f'(x) x' over the arguments: `next`(i, j) is Σ i x_i f'_j, of
-/// what y has so far.
+/// y_1, y_2, … from y_0 by y' = Σ f'(x) x' over the arguments; `next`(i, j) is Σ i x_i f'_j from
+/// the terms of y so far.
 template <int K>
 struct Functions<PowerSeries<K>> {
   using Series = PowerSeries<K>;
@@ -197,7 +197,7 @@ struct Functions<PowerSeries<K>> {
     return std::all_of(x.c.begin() + 1, x.c.end(), [](double c) { return c == 0; });
   }
   static Series of(Operation o, const Series& x) {
-    if (o == Operation::sin) return sin(x);  // pairs, each the slope of the other
+    if (o == Operation::sin) return sin(x);  // a pair, each the slope of the other
     if (o == Operation::cos) return cos(x);
     Series y(function(o, x.c[0]));
     if (o == Operation::sinh || o == Operation::cosh) {
@@ -232,7 +232,7 @@ struct Functions<PowerSeries<K>> {
   }
 };
 
-/// Counted like an angle each: the paper's table has no other functions.
+/// Each counts like an angle: the paper's table has no other functions.
 template <>
 struct Functions<Counted> {
   static Counted of(Operation o, const Counted& a) { return counted(function(o, a.value())); }

@@ -1,5 +1,5 @@
 #pragma once
-// The functions of formulas in quad precision.
+// Functions of formulas in quad precision.
 
 #include <momenta/core/expression/functions.h>
 #include <momenta/core/scalar/quad.h>

@@ -28,12 +28,12 @@ class Backward {
  private:
   int& of(int y) { return bar_[static_cast<std::size_t>(y)]; }
   bool is(int i, double x) const { return tape_[i].operation == O::number && tape_[i].number == x; }
-  /// Whether it is zero but where it is chosen.
+  /// Whether the instruction is a choice with zero on one side.
   bool is_part(const Instruction& in) const {
     return in.operation == O::choice && (is(in.b, 0) || is(in.c, 0));
   }
-  /// Signs go outward: where two of them meet, or a sum is taken, they are gone. So do choices: of
-  /// what is not chosen, sqrt(x) in if(x > 0, sqrt(x), 0), there may be no slope.
+  /// Moves signs outward, where two cancel or a sum takes them, and choices too: the value not
+  /// chosen, sqrt(x) in if(x > 0, sqrt(x), 0), may have no slope.
   int times(int a, int b) {
     if (is(a, 1)) return b;
     if (is(a, 0)) return a;

@@ -8,9 +8,9 @@ namespace momenta {
 namespace {
 
 constexpr int looks = 4096, most_whole_numbers = 1000;
-/// Places in a row between which nothing varies part what varies before and behind them.
+/// Longest pause, in places, within one change.
 constexpr int rest = 4;
-/// Second differences below this part of the largest value are none.
+/// Least second difference that counts, relative to the largest value.
 constexpr double varies = 1e-9;
 
 }  // namespace
@@ -65,8 +65,8 @@ void InputTimes::add(const Expression& formula, int time,
   const std::vector<formula::Instruction>& tape = formula.tape();
   enum class Takes : char { nothing, time_alone, more };
   std::vector<Takes> takes(tape.size(), Takes::nothing);
-  std::vector<char> is_part(tape.size(), 1);  // of a larger one that takes the time alone
-  formula::Tape inputs;                       // the same, numbers in the place of what stays
+  std::vector<char> is_part(tape.size(), 1);  // part of a larger formula of the time alone
+  formula::Tape inputs;                       // the tape with numbers for constant variables
   std::vector<int> place(tape.size());
   for (std::size_t i = 0; i < tape.size(); ++i) {
     formula::Instruction in = tape[i];
@@ -116,7 +116,7 @@ void InputTimes::add(const Expression& formula, int time,
   }
 }
 
-/// Between two places whose values differ: where it jumps, or eighths of the way between.
+/// Adds what is between two places whose values differ: a jump, or eighths of the interval.
 void InputTimes::add_change(const std::function<double(double)>& input, double from, double to,
                             double low, double high, double least) {
   const double change = std::abs(high - low);
@@ -145,14 +145,14 @@ void InputTimes::add(const std::function<double(double)>& input) {
     largest = std::max(largest, std::abs(value(i)));
   }
   const double least = varies * largest;
-  int first = 0, last = -rest;  // of the places about which it varies, those in a row
+  int first = 0, last = -rest;  // places of the present run of change
   const auto end_of_row = [&] {
     if (first == 0) return;
     const int from = first - 1, to = last + 1;
     if (last - first <= rest) {
       for (int i = from; i < to; ++i)
         add_change(input, time(i), time(i + 1), value(i), value(i + 1), least);
-    } else if (last - first < looks / 4) {  // longer, and no step passes it unseen
+    } else if (last - first < looks / 4) {  // longer: no step misses it
       add_pulse(time(from), time(to));
     }
   };

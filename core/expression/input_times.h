@@ -1,7 +1,6 @@
 #pragma once
-// When inputs change: parts of formulas that take the time alone, and laws of drives. A step with
-// error control may be longer than a pulse and see nothing of it, so that these times are to be
-// ends of steps:
+// Times at which inputs change: parts of formulas that take the time alone, and laws of drives.
+// Steps with error control could miss a short pulse, so steps end at these times:
 //
 //   a < b, sign(a), floor(a)               where the argument, linear in t, has its zero: just
 //                                          before and just behind it
@@ -9,7 +8,7 @@
 //   anything else                          looked at in 4096 places of the span: where it jumps,
 //                                          and where it begins and ends to vary
 //
-// A pulse shorter than that between two places, by none of the first two, may be missed.
+// A pulse of the last kind, shorter than the distance of two places, may be missed.
 
 #include <momenta/core/expression/expression.h>
 
@@ -24,32 +23,31 @@ namespace momenta {
 
 class InputTimes {
  public:
-  /// Of a run [s].
+  /// Times of a run from t0 to end [s].
   InputTimes(double t0, double end) : t0_(t0), end_(end) {}
 
-  /// A formula, its variable t, and the numbers of variables that stay as they are.
+  /// Adds a formula, with its variable t and the numbers of variables that stay constant.
   void add(const Expression& formula, int time,
            const std::function<std::optional<double>(int)>& number = {});
-  /// What varies between these times alone. Methods that evaluate ends of steps alone have to see
-  /// it too: eighths of it.
+  /// Adds an input that varies between these times alone: eighths of the interval, for methods that
+  /// evaluate only ends of steps.
   void add_pulse(double from, double to);
 
-  /// Inside the run, ascending, none twice.
+  /// All times inside the run, ascending, none twice.
   std::vector<double> all() const;
 
  private:
-  /// A function of the time.
+  /// Adds a function of the time.
   void add(const std::function<double(double)>& input);
-  /// A time by itself.
+  /// Adds a single time.
   void add_corner(double t);
-  /// How far from a jump the times before and behind it are.
+  /// Distance of the times before and behind a jump from it.
   double beside_jump() const {
     return std::max(1e-12 * (end_ - t0_), 16 * std::numeric_limits<double>::epsilon() *
                                               std::max(std::abs(t0_), std::abs(end_)));
   }
   void add_jump(double before, double behind);
-  /// Whether the argument of a switch is linear in t; its zeros, or passages of whole numbers, are
-  /// added then.
+  /// Whether a switch's argument is linear in t; then adds its zeros, or passages of whole numbers.
   bool add_linear(const Expression& argument, bool jumps, bool whole);
   void add_change(const std::function<double(double)>& input, double from, double to, double low,
                   double high, double least);

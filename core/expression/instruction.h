@@ -50,7 +50,7 @@ enum class Operation : std::uint8_t {
 };
 struct Instruction {
   Operation operation = Operation::number;
-  int a = -1, b = -1, c = -1;  ///< instructions before; of a variable a is its number
+  int a = -1, b = -1, c = -1;  ///< instructions before; a of a variable is its number
   double number = 0;           ///< exponent of a whole power, order of a spline's derivative
   const CubicSpline* spline = nullptr;  ///< kept by the formula
 };

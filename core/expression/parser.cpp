@@ -1,5 +1,5 @@
-// The grammar of expression.h, one function a line of it; and before the formula definitions of
-// names for its parts,
+// The grammar of expression.h, one function a line; before the formula stand definitions of names
+// for its parts,
 //
 //   whole:      { name ":=" or ";" } or
 //
@@ -21,13 +21,13 @@ namespace momenta {
 namespace formula {
 namespace {
 
-constexpr int deepest = 200;  // brackets and signs within each other
+constexpr int deepest = 200;  // nested brackets and signs
 
-/// An instruction, and what it gives.
+/// An instruction and its kind of value.
 struct Term {
   int at;
   bool truth;
-  std::size_t place;  ///< where it begins
+  std::size_t place;  ///< where its text begins
 };
 
 class Parser : Scanner {
@@ -45,7 +45,7 @@ class Parser : Scanner {
   std::vector<std::shared_ptr<const CubicSpline>> take_splines() { return std::move(splines_); }
 
  private:
-  /// The name before ":=", behind which the reading goes on; nothing: no definition stands here.
+  /// The name before ":=", which is read too; nothing: no definition stands here.
   std::optional<std::string_view> defined_name() {
     skip_blanks();
     if (!at_letter()) return {};
@@ -157,7 +157,7 @@ class Parser : Scanner {
     const int of = number(sign());
     return {plus ? of : tape_.add({Operation::negative, of, -1, -1, 0}), false, from};
   }
-  /// Powers with a whole number are products: x^2 has a derivative where x is negative.
+  /// Powers with whole exponents are products: x^2 has a derivative where x is negative.
   Term power() {
     const Term base = primary();
     if (!take("^")) return base;
@@ -284,7 +284,7 @@ class Parser : Scanner {
     return {tape_.add(in), false, from};
   }
 
-  /// Counts how deep a formula is nested, which the parser recurses over.
+  /// Counts the nesting of the formula, over which the parser recurses.
   class Depth {
    public:
     explicit Depth(Parser& parser) : parser_(parser) {
@@ -303,7 +303,7 @@ class Parser : Scanner {
   FormulaNames& names_;
   int depth_ = 0;
   Tape tape_;
-  std::map<std::string_view, Term> locals_;  ///< by ":="
+  std::map<std::string_view, Term> locals_;  ///< names by ":="
   std::vector<std::shared_ptr<const CubicSpline>> splines_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// From the text of a formula to its tape.
+// Parser of formulas: from text to tape.
 
 #include <momenta/core/expression/tape.h>
 
@@ -11,8 +11,8 @@ namespace momenta::formula {
 
 struct Parsed {
   Tape tape;
-  std::vector<std::shared_ptr<const CubicSpline>> splines;  ///< that the tape points to
-  int at = 0;                                               ///< the formula's instruction
+  std::vector<std::shared_ptr<const CubicSpline>> splines;  ///< functions by points on the tape
+  int at = 0;                                               ///< instruction of the formula
   bool truth = false;                                       ///< whether it is a comparison
 };
 /// @throws ExpressionError. O(length) and lookups of names

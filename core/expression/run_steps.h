@@ -1,6 +1,6 @@
 #pragma once
-// Steps of a formula (steps.h) in plain numbers and in packs of them, by a table of acts. Included
-// only where it is instantiated: acts are compiled once for each scalar.
+// Runs the steps of a formula (steps.h) in plain numbers and in packs, by a table of acts. Included
+// only where instantiated: acts are compiled once a scalar.
 
 #include <momenta/core/expression/functions.h>
 #include <momenta/core/expression/steps.h>
@@ -22,7 +22,7 @@ MOMENTA_INLINE S arithmetic(const S& a, const S& b) {
   if constexpr (o == Arithmetic::under) return b / a;
 }
 
-/// xⁿ by the products of whole_power().
+/// xⁿ by the multiplications of whole_power().
 template <int n, class S>
 MOMENTA_INLINE S whole_power_of(const S& x) {
   if constexpr (n == 0) return S(1.0);
@@ -36,11 +36,11 @@ MOMENTA_INLINE S whole_power_of(const S& x) {
 template <class S>
 using Act = void (*)(const Step& s, S* line);
 
-/// A function or a comparison of single numbers, as execute() has it (evaluate.h).
+/// A function or comparison of single numbers, as in execute() (evaluate.h).
 double one_by_one(const Step& s, Operation o, double a, double b, double c);
 
-/// The same in a pack: what the library has for single numbers goes there lane by lane, out of
-/// line, so that no code for these is compiled for a level.
+/// The same in a pack: library functions are called lane by lane, out of line, so that none is
+/// compiled for a level.
 template <Operation o, int W, int L>
 MOMENTA_INLINE Pack<W, L> lane_by_lane(const Step& s, const Pack<W, L>* line) {
   const Pack<W, L> a = line[s.a], b = line[s.b], c = line[s.c];
@@ -63,11 +63,11 @@ MOMENTA_INLINE Pack<W, L> lane_by_lane(const Step& s, const Pack<W, L>* line) {
   }
   return y;
 }
-/// Single numbers are run in one place alone (run_steps.cpp).
+/// Single numbers are run in run_steps.cpp alone.
 template <Operation o>
 double lane_by_lane(const Step& s, const double* line);
 
-/// The act of a place in the table.
+/// Executes an act of the table.
 template <int act, class S>
 void execute_step(const Step& s, S* line) {
   using A = Arithmetic;
@@ -103,7 +103,7 @@ class Acts {
   static constexpr std::array<Act<S>, acts> make(std::integer_sequence<int, act...>) {
     return {{of<act>()...}};
   }
-  /// Null where no step has it.
+  /// The function of an act; null where no step has it.
   template <int act>
   static constexpr Act<S> of() {
     constexpr int operations = static_cast<int>(Operation::spline) + 1;

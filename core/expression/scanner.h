@@ -1,6 +1,6 @@
 #pragma once
-// The text of a formula as its parser reads it: a place in it, what stands there, and the sentences
-// of what is not expected there.
+// The text of a formula as its parser reads it: a place in it, what stands there, and error
+// sentences.
 
 #include <cstddef>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace momenta::formula {
 
-/// Reads one text. Takers pass blanks first, and stay where they are where they take nothing.
+/// Reads one text. Takers skip blanks, and do not move where they take nothing.
 class Scanner {
  public:
   /// @throws ExpressionError: longer than a million characters
@@ -20,13 +20,12 @@ class Scanner {
   void go_to(std::size_t place) { at_ = place; }
   std::string_view rest() const { return text_.substr(at_); }
 
-  /// What stands here: a letter or _ that a name begins with; a digit, or a dot before one.
+  /// Whether a letter or _ that begins a name is here; whether a digit, or a dot before one.
   bool at_letter() const;
   bool at_number() const;
   /// A name and the names after its dots, or one character.
   std::string_view word() const;
-  /// "der(x)" from a name here and the brackets behind it, without blanks; empty: they do not
-  /// close.
+  /// Text from `from` to the next ')', without blanks: "der(x)"; empty: there is none.
   std::string with_brackets(std::size_t from) const;
 
   bool take(std::string_view sign);
@@ -34,10 +33,10 @@ class Scanner {
   /// @throws ExpressionError: no double holds it, or a name follows without an operator
   double take_number();
 
-  /// @throws ExpressionError, of that place
+  /// @throws ExpressionError at that place
   [[noreturn]] void fail(std::size_t place, const std::string& sentence) const;
-  /// Of what stands here, or of the end: what it is here where it is another notation's, else this
-  /// ending. A comma between digits is one, where a comma is nothing else.
+  /// @throws ExpressionError on the text here, or its end: a hint where it is another notation's, a
+  /// comma as decimal point included, else `ending`.
   [[noreturn]] void fail_here(const std::string& ending) const;
 
  private:

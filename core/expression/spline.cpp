@@ -24,8 +24,8 @@ int sign_of(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-/// The slope at an end from those of the two gaps beside it, h and next wide: of the parabola
-/// through three points, as far as it keeps the sign.
+/// Slope at an end from the slopes of the two gaps beside it, h and next wide: that of the parabola
+/// through three points, limited to keep the sign.
 double end_slope(double h, double next, double slope, double beyond) {
   const double s = ((2 * h + next) * slope - h * beyond) / (h + next);
   if (sign_of(s) != sign_of(slope)) return 0;
@@ -52,7 +52,7 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
 
 }  // namespace
 
-/// Cubics of given slopes, and straight lines outside.
+/// Cubics through given slopes, and straight lines outside.
 void CubicSpline::go_through(const std::vector<double>& x, const std::vector<double>& y,
                              const std::vector<double>& s) {
   const std::size_t n = x.size();
@@ -147,7 +147,7 @@ CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<dou
                         {values[i], slope(i) - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2,
                          (m[i + 1] - m[i]) / (6 * h)}};
   }
-  segments_.front() = segments_[1];  // before the first by rounding alone
+  segments_.front() = segments_[1];  // before the first knot by rounding alone
 }
 
 }  // namespace momenta

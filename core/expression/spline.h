@@ -6,16 +6,16 @@
 //
 // Continuity of f': hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁).
 //
-// Others are cubics through given slopes sᵢ,
+// Alternatively cubics through given slopes sᵢ,
 //
 //   f = yᵢ + sᵢ z + (3Δ − 2sᵢ − sᵢ₊₁)/h z² + (sᵢ + sᵢ₊₁ − 2Δ)/h² z³,  Δ = (yᵢ₊₁ − yᵢ)/h
 //
 // Monotone: sᵢ is the weighted harmonic mean of both Δ, zero where they differ in sign (F. N.
 // Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304). Linear: straight gaps.
 //
-// Natural: m = 0 at both ends. Outside, the straight line of the end slope: f" is continuous there
-// too. Periodic: a last gap leads back to y₀ at x₀ + period, and the indices go round. Within a gap
-// the derivatives are exact; a dual number takes the gap of its value.
+// Natural: m = 0 at both ends. Outside, the line of the end slope: f" stays continuous. Periodic: a
+// last gap leads back to y₀ at x₀ + period, indices modulo n. Within a gap the derivatives are
+// exact; a dual number takes the gap of its value.
 
 #include <momenta/core/scalar/dual.h>
 
@@ -26,7 +26,7 @@
 
 namespace momenta {
 
-/// p, ṗ, p̈ of Σ cᵢ xⁱ. The second derivative is accumulated halved.
+/// p, ṗ, p̈ of Σ cᵢ xⁱ; the second derivative is accumulated halved.
 template <class S>
 void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pddot) {
   S value(0.0), rate(0.0), half(0.0);
@@ -40,41 +40,42 @@ void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pd
   pddot = half + half;
 }
 
-/// How a function goes between its points.
+/// Interpolation between the points.
 enum class Interpolation {
   cubic,     ///< f" is continuous
-  monotone,  ///< f' is, and f rises or falls where the points do
-  linear     ///< f is
+  monotone,  ///< f' is continuous, and f rises or falls where the points do
+  linear     ///< f is continuous
 };
 
-/// Why points are none of a spline, in words with the names of both lists; empty where they are.
+/// Why points make no spline, in words with the names of both lists; empty: they do.
 std::string spline_fault(const std::vector<double>& x, const std::vector<double>& y,
                          const std::string& x_name, const std::string& y_name);
 
 class CubicSpline {
  public:
   CubicSpline() = default;
-  /// Natural, or by another interpolation. @pre spline_fault() is empty. O(points)
+  /// A natural spline, or another interpolation. @pre spline_fault() is empty. O(points)
   CubicSpline(const std::vector<double>& x, const std::vector<double>& y,
               Interpolation between = Interpolation::cubic);
-  /// Periodic. @pre the same, three points at least, x[0] + period beyond the last. O(points)
+  /// A periodic spline. @pre as above, at least three points, x[0] + period beyond the last.
+  /// O(points)
   CubicSpline(const std::vector<double>& x, const std::vector<double>& y, double period);
 
   Interpolation between() const { return between_; }
 
-  /// f, f' and f" of a natural one. O(log points)
+  /// f, f' and f" of a natural spline. O(log points)
   template <class S>
   void evaluate(const S& x, S& f, S& first, S& second) const {
     const Segment& segment = at(x);
     horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
   }
-  /// The same of a periodic one.
+  /// The same for a periodic spline.
   template <class S>
   void evaluate_round(const S& x, S& f, S& first, S& second) const {
     const double turns = std::floor((value_of(x) - knots_.front()) / period_);
     evaluate(turns == 0 ? x : S(x - S(turns) * S(period_)), f, first, second);
   }
-  /// The derivative of an order from 0: f itself. @pre natural. O(log points)
+  /// The derivative of an order; order 0 is f. @pre natural. O(log points)
   template <class S>
   S derivative(const S& x, int order) const {
     const Segment& segment = at(x);
@@ -96,7 +97,7 @@ class CubicSpline {
   };
   template <class S>
   const Segment& at(const S& x) const {
-    // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before x
+    // segments_[k] holds between knots k − 1 and k; k: number of knots at or before x
     std::size_t low = 0, high = knots_.size();
     while (low < high) {
       const std::size_t middle = (low + high) / 2;
@@ -114,8 +115,7 @@ class CubicSpline {
   Interpolation between_ = Interpolation::cubic;
   double period_ = 0;  ///< 0: natural
   std::vector<double> knots_;
-  std::vector<Segment>
-      segments_;  ///< one more than knots_: the first and last are the lines outside
+  std::vector<Segment> segments_;  ///< one more than knots_: first and last are the lines outside
 };
 
 }  // namespace momenta

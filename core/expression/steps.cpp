@@ -13,7 +13,6 @@ int number_of(A o) {
   return static_cast<int>(o);
 }
 
-/// Two operands of one operation.
 struct Binary {
   A operation;
   int a, b;
@@ -28,7 +27,7 @@ class Maker {
       const int of[]{in.a, in.b, in.c};
       for (int i = 0; i < count; ++i) ++uses_[index(of[i])];
     }
-    for (const int i : outputs) uses_[index(i)] += 2;  // what is asked for is never within a step
+    for (const int i : outputs) uses_[index(i)] += 2;  // outputs are never within a step
     for (std::size_t i = tape.size(); i-- > 0;)
       if (!absorbed_[i]) absorb(static_cast<int>(i));
     lay_out();
@@ -60,10 +59,10 @@ class Maker {
         return {};
     }
   }
-  /// What only its one taker needs.
+  /// Whether instruction i is needed by its one taker alone.
   bool is_within(int i) const { return uses_[index(i)] == 1 && binary(i).has_value(); }
 
-  /// Marks what the step that ends with instruction i takes in.
+  /// Marks the instructions that the step ending with i takes in.
   void absorb(int i) {
     const auto y = binary(i);
     if (!y) return;
@@ -93,7 +92,7 @@ class Maker {
   }
   int place(int i) const { return i < 0 ? 0 : place_[index(i)]; }
 
-  /// The operation of y on what its operand x gives and on the other one, which is returned.
+  /// The operation of y on its operand x, and its other operand.
   static std::pair<A, int> on(const Binary& y, bool left) {
     if (left) return {y.operation, y.b};
     const A turned = y.operation == A::subtract ? A::from
@@ -167,7 +166,7 @@ class Maker {
   std::vector<int> uses_;
   std::vector<char> absorbed_;
   std::vector<int> place_;
-  std::unordered_map<int, std::size_t> turned_;  ///< a place's first sine or cosine: its step
+  std::unordered_map<int, std::size_t> turned_;  ///< step of the first sine or cosine of a place
   Steps steps_;
 };
 

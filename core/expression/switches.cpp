@@ -13,7 +13,7 @@ Expression Switches::held(const Expression& formula) {
     return o == Operation::less || o == Operation::less_equal || o == Operation::sign ||
            o == Operation::floor;
   };
-  std::vector<bool> turns(tape.size());  // whether it is in what a jump turns at
+  std::vector<bool> turns(tape.size());  // whether it is in the argument of a jump
   for (std::size_t k = tape.size(); k-- > 0;)
     if (turns[k] || is_jump(tape[k].operation))
       if (tape[k].operation != Operation::variable)

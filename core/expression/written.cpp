@@ -41,7 +41,7 @@ Written Written::of(Operation o, const Written& a, const Written* b, const Writt
           "one: has a number been kept from another formula?");
     tape = w->tape_;
   }
-  Tape numbers;  // of numbers alone the tape makes a number
+  Tape numbers;  // turns an operation of numbers into a number
   Tape& all = tape ? *tape : numbers;
   const auto place = [&](const Written* w) {
     return !w ? -1 : w->tape_ ? w->place_ : all.number(w->number_);

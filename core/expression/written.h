@@ -1,17 +1,16 @@
 #pragma once
-// A number of a formula that is written in C++: computing with it writes the formula down, as one
-// types it (core/expression/expression.h). Code that is a template over its number type,
+// A number that records the formula computed with it, as one types it
+// (core/expression/expression.h). Code that is a template over its number type,
 //
 //   template <class S> S length(const S* x) { using std::sqrt; return sqrt(x[0]*x[0] + x[1]*x[1]);
 //   }
 //
-// called with Written gives "sqrt(x*x + y*y)". It is called once, so what it does must not depend
-// on values: comparisons give a WrittenTruth, which is no bool and stands in choose() as it stands
-// in if(c, a, b) of a typed formula.
+// called with Written gives "sqrt(x*x + y*y)". It is called once and must not branch on values:
+// comparisons give a WrittenTruth, no bool, for choose(), the if(c, a, b) of typed formulas.
 //
-// What is used twice is known: it is written once, by a definition "s1 := …;", where the text would
-// be long or deep otherwise. Else the text is the formula as it reads, whatever order C++ computes
-// operands in, so that it has the tape of the same formula typed, to the last bit.
+// Repeated parts are written once, by a definition "s1 := …;", where the text would be long or
+// deep. Else the text reads as the code, whatever order C++ evaluates operands in, and gives the
+// tape of the same formula typed.
 
 #include <momenta/core/expression/expression.h>
 
@@ -25,16 +24,16 @@ namespace momenta {
 
 class WrittenTruth;
 
-/// A number that is known, or a place on the tape of a formula under way.
+/// A known number, or a place on the tape of a formula.
 class Written {
  public:
-  /// A number that is known.
+  /// A known number.
   Written(double number = 0) : number_(number) {}
   /// x₀ … x_(count−1) of one tape.
   static std::vector<Written> variables(int count);
 
-  /// The formula of this number, with these names for x₀, x₁, …; O(tape) characters. @throws
-  /// std::logic_error where it has a number that is infinite or none
+  /// The formula, with these names for x₀, x₁, …; O(tape) characters. @throws std::logic_error
+  /// where it has a number that is not finite
   std::string text(std::span<const std::string> names) const;
   /// Whether it is this number for every x.
   bool is(double number) const { return !tape_ && number_ == number; }
@@ -78,27 +77,26 @@ class Written {
   friend Written hypot(const Written& a, const Written& b);
   friend Written min(const Written& a, const Written& b);
   friend Written max(const Written& a, const Written& b);
-  /// A product where the exponent is a whole number up to 1000, so that it has derivatives where
-  /// the base is negative.
+  /// A product for whole exponents up to 1000, so that it has derivatives at negative bases.
   friend Written pow(const Written& base, const Written& exponent);
   friend Written pow(const Written& base, double exponent) { return pow(base, Written(exponent)); }
-  /// The value of the one or of the other; both are computed.
+  /// a where c holds, else b; both are computed.
   friend Written choose(const WrittenTruth& c, const Written& a, const Written& b);
 
  private:
   friend class WrittenTruth;
   using Operation = formula::Operation;
   Written(std::shared_ptr<formula::Tape> tape, int place) : tape_(std::move(tape)), place_(place) {}
-  /// @throws std::logic_error where two of them have variables of different calls of variables()
+  /// @throws std::logic_error for operands of different calls of variables()
   static Written of(Operation o, const Written& a, const Written* b = nullptr,
                     const Written* c = nullptr, double number = 0);
 
-  double number_ = 0;                    ///< where there is no tape
-  std::shared_ptr<formula::Tape> tape_;  ///< null: a number
+  double number_ = 0;                    ///< value without a tape
+  std::shared_ptr<formula::Tape> tape_;  ///< null: a known number
   int place_ = -1;
 };
 
-/// A comparison of such numbers: no bool, since it is not known when the formula is written.
+/// A comparison of Written numbers: no bool, since it is unknown when the formula is written.
 class WrittenTruth {
  public:
   friend WrittenTruth operator&&(const WrittenTruth& a, const WrittenTruth& b);
@@ -116,7 +114,7 @@ class WrittenTruth {
   Written value_;  ///< 1 or 0
 };
 
-/// The same of plain numbers, so that one template serves both.
+/// The same for plain numbers, so that one template serves both.
 inline double choose(bool c, double a, double b) {
   return c ? a : b;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The field of accelerations a + K r of a body, K = α~ + ω~ ω~, the wrench it takes, and the turns
-// by which both pass a revolute joint: of inverse_dynamics_sweeps.h.
+// Field of accelerations a + K r of a body, K = α~ + ω~ ω~, the wrench it takes, and the turns of
+// both over a revolute joint: for inverse_dynamics_sweeps.h.
 
 #include <momenta/core/kernel/mass_moments.h>
 
@@ -18,12 +18,12 @@ MOMENTA_INLINE AccelerationField<S> acceleration_field(const S& ox, const S& oy,
   return {-(y2 + z2), xy - ez, xz + ey, xy + ez, -(x2 + z2), yz - ex, xz - ey, yz + ex, -(x2 + y2)};
 }
 
-/// f without m a, n about O.
+/// Wrench on a body: f without m a, n about O.
 template <class S>
 struct PlainWrench {
   S fx, fy, fz, nx, ny, nz;
 };
-/// Of the body itself; on a revolute joint c_z = Σ_zz = 0.
+/// Wrench of the body itself; on a revolute joint c_z = Σ_zz = 0.
 template <bool revolute, class S>
 MOMENTA_INLINE void own_wrench(const MassMoments<S>& b, const AccelerationField<S>& K, const S& ax,
                                const S& ay, const S& az, PlainWrench<S>& w) {
@@ -53,7 +53,7 @@ MOMENTA_INLINE void add(PlainWrench<S>& a, const PlainWrench<S>& b) {
   a.nz = a.nz + b.nz;
 }
 
-/// What bodies pass on outward: ω, a, α and the first column of K.
+/// Quantities passed outward: ω, a, α and the first column of K.
 template <class S>
 struct Spin {
   S ox, oy, oz, ax, ay, az, ex, ey, ez, kx, ky, kz;
@@ -108,7 +108,7 @@ MOMENTA_INLINE void turn_inward_z(const S& c, const S& s, S& x, S& y) {
   y = s * before + c * y;
 }
 
-/// A revolute joint on the ground, or one whose way from the parent is a screw about x.
+/// Whether a revolute joint is on the ground, or its way from the parent a screw about x.
 MOMENTA_INLINE bool is_plain_revolute(const Link& l) {
   return l.kind == LinkKind::revolute && (l.parent < 0 || !(l.screwed || l.turn == Turn::tilted));
 }

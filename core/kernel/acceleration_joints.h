@@ -1,6 +1,6 @@
 #pragma once
-// Joints other than revolute ones in the articulated recursion, inward and outward: spherical
-// joints, joints on one axis, and free and user joints.
+// Joints other than revolute in the articulated recursion, inward and outward: spherical, on one
+// axis, free, user.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/axis_joint.h>

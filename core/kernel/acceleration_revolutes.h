@@ -1,12 +1,11 @@
 #pragma once
-// Revolute joints on the inward way of the articulated recursion: inside a chain, and anywhere
-// else.
+// Revolute joints in the inward sweep of the articulated recursion: inside a chain, and elsewhere.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 
 namespace momenta {
 
-/// + the body's bias wrench.
+/// D += the body's bias wrench.
 template <class S>
 MOMENTA_INLINE void add_bias(Articulated<S>& articulated, const RevoluteAcceleration<S>& w) {
   articulated.Dfx = articulated.Dfx + w.bfx;
@@ -25,7 +24,7 @@ MOMENTA_INLINE void set_bias(Articulated<S>& articulated, const RevoluteAccelera
   articulated.Dny = w.bny;
   articulated.Dnz = w.bnz;
 }
-/// D' after the revolute joint is eliminated.
+/// D' once the revolute joint is eliminated.
 template <class S>
 MOMENTA_INLINE void eliminate_bias(const Articulated<S>& articulated, const S& tau,
                                    const S& inverse, RevoluteAcceleration<S>& w, Eliminated<S>& r) {
@@ -58,13 +57,13 @@ MOMENTA_INLINE void turn_revolute(Eliminated<S>& r, const S& c, const S& s, cons
   r.ny = r.ny + (m.Hxy * w.clx + m.Hyy * w.cly + m.Hzy * w.clz + m.Ixy * w.cox + m.Iyy * w.coy);
 }
 
-/// What a rotor's k, turned, adds to D'_nz = … + (M' c)_nz.
+/// Share of a rotor's k, turned, in D'_nz = … + (M' c)_nz.
 template <class S>
 MOMENTA_INLINE S rotor_bias(const Spatial::Force<S>& k, const RevoluteAcceleration<S>& w) {
   return k.f[0] * w.clx + k.f[1] * w.cly + k.f[2] * w.clz + k.n[0] * w.cox + k.n[1] * w.coy;
 }
 
-/// M' and D' of a revolute joint whose M*, D are complete.
+/// M' and D' of a revolute joint from complete M*, D.
 template <class S>
 MOMENTA_INLINE void eliminate_revolute(const Articulated<S>& articulated, const S& tau,
                                        RevoluteAcceleration<S>& w, Eliminated<S>& r) {
@@ -106,7 +105,7 @@ std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const 
     turn_revolute(r, angles_.cosine(k), angles_.sine(k), l.d, revolutes_[k]);
     const Path next = links[k - 1].path;
     if (next != static_cast<Path>(turn) && next != Path::root) {
-      const Eliminated<S> last = r;  // whose address is taken
+      const Eliminated<S> last = r;  // `last`: its address is taken, r stays in registers
       carry_last<turn, false>(last, l, from);
       return k;
     }

@@ -1,16 +1,15 @@
 #pragma once
-// The articulated-body recursion (Featherstone) in space, (q, u, t) → u̇, in the frames and with
-// every trick of the momentum recursion: its twin, and the opponent it is measured against.
+// The articulated-body recursion (Featherstone) in space, (q, u, t) → u̇, in the frames and with the
+// means of the momentum recursion, its twin.
 //
 //   outward   Ω of every body; c: what its acceleration has beside 𝒯ⱽ A_L and E u̇; bias wrench
 //             b = (ω × (ω × m c), ω × J ω)
 //   inward    M* as in the momentum recursion; e = τ − Eᵀ D, D_L += 𝒯ᶠ (D + h e + M' c)
 //   outward   W = 𝒯ⱽ A_L + c, u̇ = M_j⁻¹ e − hᵀ W, A = W + E u̇
 //
-// A = (acceleration of O, dω/dt) in body axes. With the acceleration of the point O itself instead
-// of the derivative of v in body axes, linear velocities drop out: only ω runs outward. Gravity is
-// an acceleration −g of the ground. For a revolute joint with the way (x screw, z screw) from its
-// parent,
+// A = (acceleration of O, dω/dt) in body axes. With the acceleration of O instead of the derivative
+// of v in body axes, linear velocities drop out: only ω goes outward. Gravity is an acceleration −g
+// of the ground. For a revolute joint with the way (x screw, z screw) from its parent,
 //   c = R ω × (ω × r) + the joint's part,  α part of c = ω × z q̇ = (ω_y q̇, −ω_x q̇, 0).
 
 #include <momenta/core/kernel/place_links.h>
@@ -32,7 +31,7 @@ struct SphericalAcceleration {
   SphericalPivot<S> pivot;
   Sym3<S> A;  ///< M' = (A, 0; 0, 0)
   Vec3<S> bf, bn, cl, co;
-  bool constant = false;  ///< pivot and A are: eliminate_leaves()
+  bool constant = false;  ///< pivot and A are constant: eliminate_leaves()
 };
 
 template <class Space, class S>
@@ -54,9 +53,8 @@ class AccelerationSweeps<Spatial, S> {
     eliminate_leaves<S>(tree, sphericals_);
   }
 
-  /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. In and Out index
-  /// like pointers to S. False when a joint's articulated inertia is not positive:
-  /// singular_joint(). O(bodies).
+  /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but weights. In and Out index like
+  /// pointers to S. False at a singular joint: singular_joint(). O(bodies).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     place(t, q);
@@ -69,7 +67,7 @@ class AccelerationSweeps<Spatial, S> {
   }
   int singular_joint() const { return singular_joint_; }
 
-  // Sweep by sweep: of a remaining tree, whose branches go between (branch_accelerations.h).
+  // Single sweeps, for remaining trees with their branches between (branch_accelerations.h).
   template <class In>
   void place(const S& t, const In& q) {
     singular_joint_ = -1;
@@ -83,8 +81,7 @@ class AccelerationSweeps<Spatial, S> {
   bool inward(const InTau& tau);
   template <class Out>
   void outward(Out udot);
-  /// What branches leave in a slot before the inward sweep, and find there after either outward
-  /// one.
+  /// Slots that branches fill before the inward sweep, and read after either outward one.
   Articulated<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
   const OutwardMotion<S>& motion(int slot) const {
     return outward_slots_[static_cast<std::size_t>(slot)];
@@ -135,7 +132,7 @@ template <class S>
 template <class InTau>
 bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
   const Link* links = tree_->links.data();
-  Articulated<S> articulated;  // nothing at a leaf
+  Articulated<S> articulated;  // zero at a leaf
   for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
@@ -165,7 +162,7 @@ bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
   return true;
 }
 
-/// A revolute joint's last step: A from the parent's frame to its own but for its own turning, left
+/// Last step of a revolute joint: A from the parent's frame to the joint's before its turning, left
 /// in `wz`.
 template <class Link, class Edge, class S>
 MOMENTA_INLINE void accelerate_revolute(const Link& l, const Edge& edge,

@@ -1,5 +1,5 @@
 #pragma once
-// The first sweep of the articulated recursion: angular velocities outward, c and bias wrenches.
+// First sweep of the articulated recursion: angular velocities outward, c and bias wrenches.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 
@@ -23,7 +23,7 @@ MOMENTA_INLINE void bias_wrench(const Link& l, const S& ox, const S& oy, const S
   bnz = ox * ly - oy * lx;
 }
 
-/// ω of a revolute joint from its parent's, and its c; all before its screw, p = ω × (ω × r) of its
+/// ω and c of a revolute joint from the parent's ω, before its screw; p = ω × (ω × r) of its
 /// origin.
 template <class Link, class S>
 MOMENTA_INLINE void turn_velocity(const Link& l, const S& px, const S& py, const S& pz,
@@ -48,7 +48,7 @@ MOMENTA_INLINE void revolute_velocity(const Link& l, const Edge& edge, const S& 
   constants_outward(l, edge, px, py, pz);
   turn_velocity(l, px, py, pz, own, c, s, ox, oy, oz, w);
 }
-/// Over any constant screws.
+/// The same over any constant screws.
 template <class Link, class Edge, class S>
 MOMENTA_INLINE void screwed_revolute_velocity(const Link& l, const Edge& edge, const S& own,
                                               const S& c, const S& s, S& ox, S& oy, S& oz,
@@ -109,8 +109,7 @@ void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
                                                   OutwardMotion<S>& articulated) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
-  // The parent's rotation seen from the child: ω, and the velocity ω × r it gives the child's
-  // origin.
+  // The parent's rotation seen from the child: ω, and the velocity ω × r of the child's origin.
   Spatial::Motion<S> W{{}, {{articulated.ox, articulated.oy, articulated.oz}}};
   if (l.parent < 0) W = {};
   Vec3<S> omega;

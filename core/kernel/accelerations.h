@@ -15,7 +15,7 @@
 
 namespace momenta {
 
-/// c_K; needs poses and velocities.
+/// c_K. Needs poses and velocities.
 template <class Space, class S>
 typename Space::template Motion<S> prescribed_acceleration(const Workspace<Space, S>& w,
                                                            std::size_t k, const S* u) {
@@ -76,8 +76,8 @@ void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau)
       if (b.nv == 1) tau[b.u] -= joint_force(b, q[b.q], u[b.u]);
 }
 
-/// u̇ (nv) from (q, u, t) by the articulated recursion. False when a joint's articulated inertia is
-/// not positive (sweeps.singular_joint()). O(bodies).
+/// u̇ (nv) from (q, u, t) by the articulated recursion. False at a singular joint
+/// (sweeps.singular_joint()). O(bodies).
 template <class Space, class S>
 bool acceleration_recursion(AccelerationSweeps<Space, S>& sweeps, Workspace<Space, S>& w,
                             const S& t, const S* q, const S* u, S* udot) {

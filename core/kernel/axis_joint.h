@@ -1,28 +1,27 @@
 #pragma once
-// Joints on one axis beside revolute ones: prismatic joints, screws, driven ones, welds. With E =
-// (e_f ẑ; e_n ẑ), (0, 1) of a revolute joint, (1, 0) of a prismatic joint, (pitch, 1) of a screw,
-// and U = M*E:
+// Joints on one axis other than revolute: prismatic, screws, driven, welds. With E = (e_f ẑ; e_n
+// ẑ), (0, 1) of a revolute joint, (1, 0) of a prismatic joint, (pitch, 1) of a screw, and U = M*E:
 //
 //   free      M_j = EᵀU + I_r, h = U / M_j, M' = M* − U hᵀ, D' = D + h (r − Eᵀ D)   (46)-(48);
 //             I_r: rotor.h
 //   driven    M' = M*, D' = D + U f', of momenta, f the law of motion          (44)
 //   welded    M' = M*, D' = D
 //
-// then the screw (θ, d) about z and the constant ones. All of it is one piece of code without
-// calls: what general_joint.h does by kind, with every intermediate in registers.
+// then the screw (θ, d) about z and the constant ones. One piece of code without calls, every
+// intermediate in registers; by kind: general_joint.h.
 
 #include <momenta/core/kernel/revolute.h>
 
 namespace momenta {
 
-/// A motion or a wrench by its components.
+/// Components of a motion or a wrench.
 template <class S>
 struct AxisColumn {
   S fx, fy, fz, nx, ny, nz;
 };
 
-// Bodies, links and constants of edges: Model<Spatial>::Body, Link and EdgeConstants, or records of
-// the same names that hold those of several mechanisms side by side.
+// Body, Link and edge constants: those of Model<Spatial>, or those of several mechanisms side by
+// side under the same names (BranchLink).
 
 /// U = M*E.
 template <class Body, class S>
@@ -33,9 +32,8 @@ MOMENTA_INLINE AxisColumn<S> axis_column(const Body& b, const Full<S>& m) {
           pitch * m.Hzx + m.Ixz, pitch * m.Hzy + m.Iyz, pitch * m.Hzz + m.Izz};
 }
 
-/// (46)-(48) of a free prismatic joint or screw: M', D' in place of M*, D for the right-hand side
-/// r. False when M_j is not positive: Joint::inertia_margin and reduce say what rounding may do to
-/// it.
+/// (46)-(48) of a free prismatic joint or screw: M*, D become M', D' for the right-hand side r.
+/// False when M_j is not positive to rounding: Joint::inertia_margin, reduce.
 template <class Body, class S>
 MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Articulated<S>& articulated,
                                    JointRecord<Spatial, S>& x) {
@@ -134,7 +132,7 @@ __attribute__((noinline)) void tilt_inward(const Constants& k, const Mass& m,
   set_articulated(articulated, M, D, G);
 }
 
-/// M', D' and, of the mass m, G from the frame of the joint to the parent's.
+/// M', D' and, for the mass m, G from the joint's frame to the parent's.
 template <bool Gravity, class Link, class Constants, class Mass, class S>
 MOMENTA_INLINE void carry_axis(const Link& l, const Constants& k, const Spatial::Edge<S>& e,
                                const Mass& m, Articulated<S>& articulated) {
@@ -168,7 +166,7 @@ MOMENTA_INLINE void carry_axis(const Link& l, const Constants& k, const Spatial:
   }
 }
 
-/// W = 𝒯ⱽ Ω_L in the frame of the joint, from the parent's motion in `c`; with gravity, g too.
+/// W = 𝒯ⱽ Ω_L in the joint's frame, from the parent's motion in `c`; with gravity, g too.
 template <bool Gravity, class Link, class Constants, class S>
 MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Constants& k,
                                                 const Spatial::Edge<S>& e, OutwardMotion<S>& c) {
@@ -210,7 +208,7 @@ MOMENTA_INLINE S axis_momentum_rate(const Body& b, const JointRecord<Spatial, S>
       A[0] * w.vx + A[1] * w.vy + A[2] * w.vz + H[0] * w.ox + H[1] * w.oy + H[2] * w.oz + x.D.f[0];
   const S fy =
       A[1] * w.vx + A[3] * w.vy + A[4] * w.vz + H[3] * w.ox + H[4] * w.oy + H[5] * w.oz + x.D.f[1];
-  S along = w.oy * fx - w.ox * fy;  // of f; of n below
+  S along = w.oy * fx - w.ox * fy;  // f here, n below
   if constexpr (Gravity) along = along + b.subtree_mass * w.gz;
   if (b.kind == JointKind::prismatic) return along;
   const S nx =

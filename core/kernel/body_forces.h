@@ -1,12 +1,12 @@
 #pragma once
-// What wrenches between points of bodies do to the joints: Q = Eᵀ T*, T* gathered inward over the
-// subtree, eq. (27).
+// Joint forces of wrenches between points of bodies: Q = Eᵀ T*, T* summed inward over subtrees,
+// (27).
 
 #include <momenta/core/kernel/forces.h>
 
 namespace momenta {
 
-/// Body k at rest, in its own axes.
+/// Sets body k at rest in its own axes.
 template <class Space, class S>
 void stand_still(Workspace<Space, S>& w, std::size_t k) {
   auto& s = w.body[k];
@@ -16,10 +16,9 @@ void stand_still(Workspace<Space, S>& w, std::size_t k) {
   s.T = {};
 }
 
-/// Place in u of the spherical joint between its two bodies that a bushing damps and does nothing
-/// else; −1: none. On the child acts n = −c ω, on the parent −n: they cancel in T* of the parent
-/// and below the child there is nothing, so that Q = −c u at this joint, u = ω in the child's axes,
-/// and 0 at all others. No body need be placed for that.
+/// Place in u of the spherical joint that a bushing only damps, between its two bodies; −1: none. n
+/// = −c ω on the child and −n on the parent cancel in T* of the parent and inward of it, so Q = −c
+/// u at this joint, u = ω in child axes, and 0 elsewhere: no body need be placed.
 template <class Space>
 int damped_ball(const Model<Space>& model, const typename Model<Space>::Bushing& b) {
   if (b.child < 0 || b.stiffness != 0 || b.damping != 0 || b.rotational_stiffness != 0 ||
@@ -30,8 +29,8 @@ int damped_ball(const Model<Space>& model, const typename Model<Space>::Bushing&
   return between && child.parent == b.parent ? child.u : -1;
 }
 
-/// Q of bushings, where there are no other forces between bodies and these all damp balls alone;
-/// else false, and nothing is done.
+/// Q of bushings that merely damp balls, if there are no other forces between bodies; else false,
+/// and nothing is done.
 template <class Space, class S>
 bool ball_damper_rates(Workspace<Space, S>& w, const S* u) {
   const auto& model = *w.model;
@@ -48,8 +47,8 @@ bool ball_damper_rates(Workspace<Space, S>& w, const S* u) {
 }
 
 /// w.generalised (nv) = Eᵀ T* of springs, dampers and wrenches at (q, u, t). One outward sweep for
-/// poses and velocities, one inward, over the bodies of forced_bodies.h: the others keep no
-/// meaning. O(these bodies + nv). Dampers of balls alone: O(these + nv), and no body has a meaning.
+/// poses and velocities, one inward, over forced_bodies.h; other bodies are stale. O(these bodies +
+/// nv); where balls are damped alone, no body is placed.
 template <class Space, class S>
 void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
   if (ball_damper_rates(w, u)) return;
@@ -73,8 +72,8 @@ void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u
   }
 }
 
-/// w.generalised (nv) = every generalised force but the weights': the joints' own springs, dampers
-/// and torques, and, unless a sweep takes them as wrenches, those at points of bodies.
+/// w.generalised (nv) = all generalised forces but weights: those of joints and, unless a sweep
+/// takes them as wrenches, at points of bodies.
 template <class Space, class S>
 void applied_forces(Workspace<Space, S>& w, const S& t, const S* q, const S* u,
                     bool at_points = true) {

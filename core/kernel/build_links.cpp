@@ -7,13 +7,13 @@ namespace {
 Turn turn_of(const Spatial::EdgeConstants& e) {
   if (e.about_y) return Turn::tilted;
   if (e.sin_alpha == 0) return Turn::parallel;
-  // A right angle to the left is one to the right seen along the other direction of the common
-  // normal; the model builder chooses that direction.
+  // A right angle to the left is one to the right seen along the common normal reversed; the model
+  // builder chooses that direction.
   if (e.cos_alpha == 0 && e.sin_alpha > 0) return Turn::right;
   return Turn::general;
 }
 
-/// Origin of the child in the parent's frame; constant for every joint that only turns.
+/// Origin of the child in the parent's frame; constant for joints that only turn.
 Vec3<double> place_of(const Model<Spatial>::Body& b) {
   Spatial::Edge<double> e;
   e.d = b.d0;

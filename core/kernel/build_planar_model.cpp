@@ -1,5 +1,5 @@
-// The plane of a scene, and its tree cast into the planar algebra. Frames are parallel to the
-// plane's basis when every joint is at zero, so all constants are read off the zero configuration.
+// The plane of a scene, and its tree in the planar algebra. Frames are parallel to the plane's
+// basis when every joint is at zero, where all constants are read off.
 
 #include <momenta/core/kernel/take_tree.h>
 
@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-constexpr double angle_tolerance = 1e-10;  // of axes given by hand to some ten digits [rad]
+constexpr double angle_tolerance = 1e-10;  // for axes typed with some ten digits [rad]
 
 bool parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.cross(b).norm() < angle_tolerance;
@@ -17,7 +17,7 @@ bool perpendicular(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::abs(a.dot(b)) < angle_tolerance;
 }
 
-/// A right-handed basis with `normal` last; ground's own axes where the normal is one of them.
+/// A right-handed basis with `normal` last; ground axes where the normal is one.
 Eigen::Matrix3d basis_about(Eigen::Vector3d normal) {
   Eigen::Index largest;
   normal.cwiseAbs().maxCoeff(&largest);
@@ -62,7 +62,7 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
     if (sharpest.norm() >= angle_tolerance) normal = sharpest.normalized();
   }
   if (!normal) {
-    // Slides along one line only: any plane through it; take the one that holds gravity.
+    // Slides along one line only: take the plane through it that holds gravity.
     const Eigen::Vector3d line = slides.empty() ? Eigen::Vector3d::UnitX() : slides.front();
     Eigen::Vector3d other = scene.gravity;
     if (other.norm() == 0 || parallel(line, other.normalized())) other = line.unitOrthogonal();

@@ -2,9 +2,9 @@
 //   Rz(γ)Tz(δ) Rx(α)Tx(a) Rz(θ)Tz(d)                     when the two z axes are inclined: a along
 //   their common normal Rz(γ)Tz(δ) Rx(α)Tx(a) Ry(β) Rz(θ)                    when they are parallel
 //   or nearly so: no far common normal
-// The frame of a body whose own joint turns or slides about z may be turned and shifted along z
-// freely; that freedom makes γ = δ = 0 for its first child. Spherical and free bodies keep the
-// scene's axes: their quaternion is the scene's.
+// The frame of a body on a joint about or along z may be turned and shifted along z; that freedom
+// makes γ = δ = 0 for its first child. Spherical and free bodies keep the scene's axes: their
+// quaternion is the scene's.
 
 #include <momenta/core/kernel/take_tree.h>
 
@@ -13,8 +13,8 @@
 namespace momenta {
 namespace {
 
-/// Sine of the inclination below which two axes count as parallel: the foot of their common normal
-/// lies up to (length of the edge) / sine away, and inertias about it lose the square of that.
+/// Sine of the inclination below which axes count as parallel: the foot of their common normal lies
+/// up to (length of the edge) / sine away, and inertias about it lose the square.
 constexpr double nearly_parallel = 0.3;
 
 struct Screws {
@@ -52,8 +52,8 @@ Screws decompose(const Eigen::Isometry3d& t) {
   return s;
 }
 
-/// Cosine and sine, exact at multiples of a right angle up to rounding of the angle; true when
-/// there is a turn.
+/// Cosine and sine, exact at multiples of a right angle up to rounding of the angle; true: there is
+/// a turn.
 bool trigonometry(double angle, double& c, double& s) {
   c = std::cos(angle);
   s = std::sin(angle);
@@ -107,7 +107,7 @@ Model<Spatial> build_spatial_model(const Tree& tree, const Scene& scene) {
   model.gravity = vec3(tree.gravity);
   model.has_gravity = tree.gravity.norm() > 0;
 
-  // The first child of a body that may be turned and shifted along its z decides how.
+  // The first child of a body free to be turned and shifted along its z decides how.
   std::vector<double> turn(n, 0.0), shift(n, 0.0);
   std::vector<bool> decided(n, false);
   for (const Tree::Body& b : tree.bodies) {

@@ -1,16 +1,16 @@
 #pragma once
-// Bushings: a point and the axes of one body held to those of another in all directions alike. With
-// x the point of the child, D = x − x_parent, u the velocity of x and ω the angular velocity of the
-// child relative to the parent, and θ the rotation vector of the child's axes from where they are
+// Bushings: a point and axes of one body held to those of another, alike in all directions. With x
+// the point of the child, D = x − x_parent, u the velocity of x and ω the angular velocity of the
+// child relative to the parent, and θ the rotation vector of the child's axes from their place
 // without couple (its direction the axis of the turn, its length the angle, at most π),
 //
 //   on the child   force f = −k D − c u at x,   couple n = −k_r θ − c_r ω
 //   on the parent  −f at x, −n
 //   V = ½ k |D|² + ½ k_r |θ|²,   V̇ = −(f + c u)·u − (n + c_r ω)·ω
 //
-// The second holds because D turns with the parent and θ·θ̇ = θ·ω: what of θ̇ is not ω is
-// perpendicular to θ. Both couples act on whole relative motions, so what moves with both bodies
-// changes nothing, linear and angular momentum included. At |θ| = π the couple turns over.
+// The second holds because D turns with the parent and θ·θ̇ = θ·ω: θ̇ − ω is perpendicular to θ.
+// Couples depend on relative motion alone, so linear and angular momentum are kept. At |θ| = π the
+// couple turns over.
 //
 // A stop at the largest angle of a spherical joint (joint_stop.h) is the couple −F(x, ẋ) θ/|θ| on
 // the child, x = |θ| − largest, ẋ = θ·ω/|θ|.
@@ -47,11 +47,11 @@ S angle_by_sine(S x) {
   return sum / product;
 }
 
-/// The rotation vector of a rotation matrix, |θ| ≤ π.
+/// Rotation vector of a rotation matrix, |θ| ≤ π.
 template <class S>
 Vec3<S> rotation_vector(const Mat3<S>& r) {
   using std::sqrt;
-  // The largest of the four components of the quaternion by its square, the others by products.
+  // Quaternion: the largest component by its square, the others by products.
   const S trace = r(0, 0) + r(1, 1) + r(2, 2);
   int largest = 3;
   for (int i = 0; i < 3; ++i)
@@ -81,7 +81,7 @@ Vec3<S> rotation_vector(const Mat3<S>& r) {
   return (2.0 * angle_by_sine(w)) * v;
 }
 
-/// The relative motion at a bushing, ground axes. Needs poses; rates need velocities.
+/// Relative motion at a bushing, ground axes. Needs poses; rates need velocities.
 template <class Space, class S>
 class BushingMotion {
  public:
@@ -104,7 +104,7 @@ class BushingMotion {
     Angular theta{};
     if constexpr (Space::dimension == 6) {
       if (b_.rotational_stiffness == 0 && !b_.stop.acts()) return theta;
-      Mat3<S> rest, turned;  // axes of the child without couple and as they are
+      Mat3<S> rest, turned;  // axes of the child without couple, and now
       for (int j = 0; j < 3; ++j) {
         const Vec3<S> without = to_ground(w_, b_.parent, b_.rest_axes[static_cast<std::size_t>(j)]);
         Vec3<double> unit{};
@@ -127,7 +127,7 @@ class BushingMotion {
     return theta;
   }
 
-  /// Whether θ is beyond the stop; then with(θ/|θ|, x, ẋ).
+  /// Calls with(θ/|θ|, x, ẋ) where θ is beyond the stop.
   template <class With>
   void at_stop(const Angular& theta, With&& with) const {
     if constexpr (Space::dimension == 6) {
@@ -147,10 +147,10 @@ class BushingMotion {
 
  public:
   Vector x;  ///< the point of the child
-  Vector D;  ///< to it from the point of the parent
+  Vector D;  ///< from the parent's point to it
 };
 
-/// Adds the wrenches of bushings to body[k].T. Needs poses and velocities.
+/// Adds wrenches of bushings to body[k].T. Needs poses and velocities.
 template <class Space, class S>
 void add_bushings(Workspace<Space, S>& w) {
   for (const auto& b : w.model->bushings) {
@@ -177,7 +177,7 @@ void add_bushings(Workspace<Space, S>& w) {
   }
 }
 
-// Products of angular quantities, which are vectors in space and numbers in a plane.
+// Products of angular quantities: vectors in space, numbers in a plane.
 template <class S>
 S bushing_square(const Vec3<S>& a) {
   return dot(a, a);
@@ -203,7 +203,7 @@ S bushing_energy(const Workspace<Space, S>& w) {
   return 0.5 * twice;
 }
 
-/// −c |u|² − c_r |ω|² of all bushings, and what the dampers of stops take [W].
+/// −c |u|² − c_r |ω|² of all bushings, less the loss of dampers of stops [W].
 template <class Space, class S>
 S bushing_power(const Workspace<Space, S>& w) {
   S power{};

@@ -1,13 +1,13 @@
 #pragma once
-// What both kinds of link trees mark alike once parents and first children are known.
+// Marks of children, alike for both kinds of link trees.
 
 #include <cstddef>
 #include <vector>
 
 namespace momenta {
 
-/// Marks in every family with a slot the child the inward sweep meets first: it opens the slot, the
-/// others add to it. O(links).
+/// Marks the child of each slot that the inward sweep meets first: it opens the slot, the others
+/// add. O(links).
 template <class Links>
 void mark_openers(Links& links) {
   std::vector<bool> met(links.size(), false);

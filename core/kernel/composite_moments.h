@@ -1,11 +1,12 @@
 #pragma once
-// First and second moments of subtrees, and how they pass a revolute joint: of composite_sweeps.h.
+// First and second moments of subtrees, and their way over a revolute joint: for
+// composite_sweeps.h.
 
 #include <momenta/core/kernel/acceleration_field.h>
 
 namespace momenta {
 
-/// c and Σ of a subtree about O, the mass apart.
+/// c and Σ of a subtree about O, without its mass.
 template <class S>
 struct CompositeMoments {
   S x, y, z, xx, xy, xz, yy, yz, zz;
@@ -22,7 +23,7 @@ MOMENTA_INLINE void add(CompositeMoments<S>& a, const CompositeMoments<S>& b) {
   a.yz = a.yz + b.yz;
   a.zz = a.zz + b.zz;
 }
-/// + those of the body itself; on a revolute joint c_z = Σ_zz = 0.
+/// Adds the body's own moments; on a revolute joint c_z = Σ_zz = 0.
 template <bool revolute, class S>
 MOMENTA_INLINE void add_body(CompositeMoments<S>& a, const MassMoments<S>& b) {
   a.x = a.x + b.c[0];

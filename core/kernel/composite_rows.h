@@ -69,7 +69,7 @@ void CompositeSweeps<Spatial, S>::any_axes(std::size_t k) {
   stations_[k] = {at.origin, at.axes.column(2), at.axes.column(0), at.axes.column(1)};
 }
 
-/// Entries of one column of M at the ancestors of body k, F about its O. `row` points past them.
+/// Entries of one column of M at the ancestors of body k, F about its O; `row` points past them.
 template <class S>
 MOMENTA_INLINE void CompositeSweeps<Spatial, S>::inward_from(std::size_t k, Column F,
                                                              S* row) const {
@@ -185,7 +185,7 @@ void CompositeSweeps<Spatial, S>::any_rows(std::size_t k, const CompositeMoments
     S* row = rows_.data() + start(dof) + above;
     if (b.has_rotor()) own[column] += b.rotor;
     for (int i = 0; i <= column; ++i) row[i] = own[i];
-    // What rounding may leave of an entry is as large as the joint's largest.
+    // Rounding of an entry is relative to the largest entry of its joint.
     scale_[dof] = b.nv == 1 ? own[0] : b.nv == 6 && column < 3 ? mass : Jx + Jy + Jz + b.rotor;
     if (b.parent < 0) continue;
     const auto turned = [&](const Vec3<S>& v) { return v[0] * w.X + v[1] * w.Y + v[2] * w.Z; };

@@ -1,8 +1,8 @@
 #pragma once
-// Not for trees with user joints: rows are gathered along axes that rest in their bodies.
+// Not for trees with user joints: rows are summed along axes at rest in their bodies.
 //
-// Composite rigid bodies in space, (q, u, τ, t) → u̇ by M itself: the opponent of small trees,
-// where it is hard to beat, and of trees that branch early.
+// Composite rigid bodies in space, (q, u, τ, t) → u̇ by M itself: fast on small trees, and on trees
+// that branch early.
 //
 //   bias      what inverse_dynamics_sweeps.h takes τ to be at u̇ = 0
 //   outward   axes X, Y, Z and the step from parent to child, in axes all bodies of a tree share:
@@ -20,12 +20,11 @@
 // M_ij ≠ 0 only where one dof lies on the other's way to the root, and no other entry arises when
 // dofs are eliminated from the leaves inward (Featherstone: branch-induced sparsity). Row k holds
 // the entries of the ancestors of k, the root's first, and its own last. The row of an ancestor i
-// is then as long as the part of row k up to i, entry for entry: eliminating k subtracts a piece of
-// row k from row i without looking up a single index.
+// matches the part of row k up to i entry for entry: eliminating k subtracts a piece of row k from
+// row i without index look-ups.
 //
-// The masses given to the parent in inverse_dynamics_sweeps.h move no less with it than with the
-// body, so M is that of these moments as well; c and Σ pass revolute joints and spherical joints
-// without mass.
+// The masses given to the parent in inverse_dynamics_sweeps.h move with it as with the body, so M
+// follows from these moments too; c and Σ pass revolute and spherical joints without mass.
 //
 // O(n d²) for n dofs of depth d, O(n d) memory.
 
@@ -46,8 +45,8 @@ class CompositeSweeps<Spatial, S> {
   using Space = Spatial;
   explicit CompositeSweeps(const LinkTree& tree);
 
-  /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. In and Out index
-  /// like pointers to S. False when M is not positive definite: singular_joint(). O(dofs · depth²).
+  /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but weights. In and Out index like
+  /// pointers to S. False when M is not positive definite: singular_joint(). O(dofs · depth²).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     dynamics_.place(t, q);
@@ -62,8 +61,8 @@ class CompositeSweeps<Spatial, S> {
     return true;
   }
 
-  /// Calls entry(row, column, value) for the upper triangle of M at (q, t), once for every pair of
-  /// dofs on one path to the root. O(dofs · depth).
+  /// Calls entry(row, column, value) for the upper triangle of M at (q, t), for each pair of dofs
+  /// on one path to the root. O(dofs · depth).
   template <class In, class Entry>
   void mass_matrix(const S& t, const In& q, Entry&& entry) {
     dynamics_.place(t, q);
@@ -76,18 +75,18 @@ class CompositeSweeps<Spatial, S> {
   }
 
   int singular_joint() const { return singular_joint_; }
-  /// Entries M has room for: of one triangle.
+  /// Number of entries stored: one triangle of M.
   std::size_t entries() const { return rows_.size(); }
 
  private:
   struct Dof {
-    int body, depth;    ///< depth: number of dofs on the way to the root
-    std::size_t start;  ///< of its row
+    int body, depth;    ///< depth: dofs on the way to the root
+    std::size_t start;  ///< start of its row
   };
   struct Ancestor {
     int dof;
   };
-  /// What the way inward wants of a body, in the tree's axes.
+  /// A body in the tree's axes, for the inward sweep.
   struct Station {
     Vec3<S> step, Z, X, Y;
   };
@@ -115,7 +114,7 @@ class CompositeSweeps<Spatial, S> {
   const LinkTree* tree_;
   InverseDynamicsSweeps<Spatial, S> dynamics_;
   std::vector<Dof> dofs_;
-  std::vector<Ancestor> way_;  ///< laid out as rows_: the dof of each entry
+  std::vector<Ancestor> way_;  ///< dof of each entry of rows_
   std::vector<Place> places_;
   std::vector<Station> stations_;
   std::vector<CompositeMoments<S>> slots_;
@@ -133,7 +132,7 @@ CompositeSweeps<Spatial, S>::CompositeSweeps(const LinkTree& tree)
       slots_(static_cast<std::size_t>(tree.slots)),
       right_(dofs_.size()),
       scale_(dofs_.size()) {
-  std::vector<Ancestor> last(places_.size());  // dof nearest to the body on its way to the root
+  std::vector<Ancestor> last(places_.size());  // nearest dof of each body, on its way to the root
   std::size_t entries = 0;
   for (std::size_t k = 0; k < places_.size(); ++k) {
     const auto& b = body(k);
@@ -152,8 +151,8 @@ CompositeSweeps<Spatial, S>::CompositeSweeps(const LinkTree& tree)
     const auto depth = static_cast<std::size_t>(dofs_[k].depth);
     way_[start(k) + depth].dof = static_cast<int>(k);
     if (depth == 0) continue;
-    // The parent's way is this one's up to itself: it is the one before in the same joint, or the
-    // last of the nearest ancestor that has any.
+    // The parent dof is the one before in the same joint, or the last of the nearest ancestor with
+    // any.
     const auto here = static_cast<std::size_t>(dofs_[k].body);
     const bool inside = static_cast<int>(k) > body(here).u;
     const int parent =
@@ -163,8 +162,8 @@ CompositeSweeps<Spatial, S>::CompositeSweeps(const LinkTree& tree)
   }
 }
 
-// Eliminating dof k, with its entries a_i = M_ki / M_kk:  M_ij −= a_i M_kj for all ancestors j ≤ i,
-// right_i −= a_i right_k. What stays in its row are L and 1 / D.
+// Eliminates dof k, with a_i = M_ki / M_kk: M_ij −= a_i M_kj for all ancestors j ≤ i, right_i −=
+// a_i right_k. Row k then holds L and 1 / D.
 template <class S>
 bool CompositeSweeps<Spatial, S>::eliminate() {
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();

@@ -3,11 +3,11 @@
 //
 //   f = −k s(l − rest) − c l̇,   Qᵢ = rᵢ f,   s(x) = x, V = ½ k (l − rest)²
 //
-// or, with a dead band, s and V of dead_band.h. Stops at limits of l as of joints: joint_stop.h.
+// or, with a dead band, s and V of dead_band.h. Stops at limits of l: joint_stop.h.
 //
-// Q_i is handed to the bodies as a wrench on what joint i carries and its opposite on what carries
-// it, along the joint's axis: a force of a slide, a couple of an angle. Eᵀ of such a pair is Q_i at
-// joint i and zero at every other, so these springs go wherever wrenches on bodies do.
+// Q_i acts as opposite wrenches on the bodies on either side of joint i, along its axis: forces for
+// a slide, couples for an angle. Eᵀ of such a pair is Q_i at joint i and zero elsewhere, so these
+// springs go wherever wrenches on bodies do.
 
 #include <momenta/core/kernel/dead_band.h>
 #include <momenta/core/kernel/points.h>
@@ -32,7 +32,7 @@ S coordinate_stretch_rate(const Workspace<Space, S>& w,
   return rate;
 }
 
-/// Adds a generalised force at the joint of body k to body[k].T and to that of its parent.
+/// Adds a generalised force at the joint of body k to body[k].T, and the reaction to the parent's.
 template <class Space, class S>
 void add_along_joint(Workspace<Space, S>& w, int k, const S& value) {
   const auto& b = w.model->bodies[static_cast<std::size_t>(k)];
@@ -68,7 +68,7 @@ void add_coordinate_springs(Workspace<Space, S>& w) {
   }
 }
 
-/// V of all [J].
+/// V of all coordinate springs [J].
 template <class Space, class S>
 S coordinate_spring_energy(const Workspace<Space, S>& w) {
   S energy{};
@@ -80,7 +80,7 @@ S coordinate_spring_energy(const Workspace<Space, S>& w) {
   return energy;
 }
 
-/// −c l̇² of all, and what dampers of stops take [W].
+/// −c l̇² of all coordinate springs, less the loss of dampers of stops [W].
 template <class Space, class S>
 S coordinate_spring_power(const Workspace<Space, S>& w) {
   S power{};

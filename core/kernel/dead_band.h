@@ -1,13 +1,13 @@
 #pragma once
 // Springs with a dead band: no force while the length l is between rest and rest + b, a linear
-// spring on either side, and corners rounded over w = b/20 to each side. With x = l − rest,
+// spring on either side, corners rounded over w = b/20 to each side. With x = l − rest,
 //
 //   f = −k s(x),   s(x) = r(x − b) − r(−x),   V = k (R(x − b) + R(−x)),   R' = r
 //   r(y) = 0, y <= −w;    (y + w)²/4w, |y| < w;    y, y >= w
 //   R(y) = 0;             (y + w)³/12w;            y²/2 + w²/6
 //
-// f has a continuous slope, and is that of the spring with corners where |x| and |x − b| are above
-// w; it differs from it by no more than k w/4. With b = 0 it is the spring without a band.
+// f has a continuous slope; it is that of sharp corners where |x| and |x − b| are above w, and off
+// by at most k w/4 elsewhere. b = 0: no band.
 
 #include <momenta/core/scalar/dual.h>
 
@@ -30,7 +30,7 @@ S rounded_ramp_energy(double w, const S& y) {
   return (1 / (12 * w)) * (z * z * z);
 }
 
-/// s(x), what is stretched of x.
+/// s(x), the stretch.
 template <class S>
 S stretched(double band, const S& x) {
   if (band == 0) return x;

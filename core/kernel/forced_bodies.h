@@ -1,9 +1,8 @@
 #pragma once
-// Which bodies are placed for the forces at points of bodies. Forces between two bodies ask for the
-// ways to their lowest common ancestor alone (relative_ways.h): a damper of a ball on a robot's leg
-// costs one joint, not the robot. Coordinate springs look at single joints and act there. What acts
-// on one body alone, or depends on where it is, takes the way to the ground. In a plane bodies have
-// the axes of the ground, and all take that way.
+// Bodies placed for forces at points of bodies. Forces between two bodies need the ways to their
+// lowest common ancestor alone (relative_ways.h): a damper of a ball on a robot's leg costs one
+// joint, not the robot. Coordinate springs need single joints. Forces on one body alone, or
+// dependent on its place, need the way to the ground; in a plane, with ground axes, all do.
 
 #include <momenta/core/kernel/model.h>
 
@@ -13,11 +12,11 @@ namespace momenta {
 
 struct ForcedBody {
   int body = 0;
-  bool from_rest = false;  ///< its parent, not among them, is at rest in its own axes
+  bool from_rest = false;  ///< its parent, not in the list, is at rest in its own axes
 };
 
-/// Parents first. O(bodies + length of the ways). Out of line: it does not depend on the scalar of
-/// the sweeps that call it, which are compiled for several instruction levels.
+/// The forced bodies, parents first. O(bodies + length of the ways). Out of line, for callers of
+/// any scalar and level.
 template <class Space>
 std::vector<ForcedBody> forced_bodies(const Model<Space>& model);
 extern template std::vector<ForcedBody> forced_bodies(const Model<Spatial>&);

@@ -1,6 +1,6 @@
 #pragma once
-// Applied wrenches T_K of (17): weights, point-to-point spring-dampers, bushings, coordinate
-// springs, constant wrenches, formulas; and the energies they store.
+// Applied wrenches T_K of (17): weights, spring-dampers, bushings, coordinate springs, constant
+// wrenches, formulas; and their energies.
 
 #include <momenta/core/kernel/bushing.h>
 #include <momenta/core/kernel/formula_force.h>
@@ -13,7 +13,7 @@ template <class Space, class S>
 void add_body_forces(Workspace<Space, S>& w) {
   for (const auto& spring : w.model->springs) {
     const SpringLine<Space, S> line(w, spring);
-    if (!line.has_direction()) continue;  // a spring of zero length pulls nowhere
+    if (!line.has_direction()) continue;  // no direction at zero length
     const S inverse = S(1.0) / line.length;
     S tension = spring.stiffness * stretched(spring.band, S(line.length - spring.rest));
     if (spring.damping != 0)
@@ -40,8 +40,7 @@ void add_body_forces(Workspace<Space, S>& w) {
   }
 }
 
-/// body[k].T = weight; needs gravity_outward. With `also_body_forces` springs and wrenches are
-/// added.
+/// body[k].T = weight, with `also_body_forces` plus springs and wrenches. Needs gravity_outward.
 template <class Space, class S>
 void apply_forces(Workspace<Space, S>& w, bool also_body_forces) {
   const auto& model = *w.model;
@@ -70,8 +69,8 @@ S kinetic_energy(const Workspace<Space, S>& w) {
   return 0.5 * twice;
 }
 
-/// V [J]: gravity, springs, joint springs and stops; constant joint torques and constant
-/// ground-axes forces count as potentials −τ q and −F·x. Needs poses with ground positions.
+/// V [J]: gravity, springs, joint springs and stops; constant joint torques and ground-axes forces
+/// count as potentials −τ q and −F·x. Needs poses with ground positions.
 template <class Space, class S>
 S potential_energy(const Workspace<Space, S>& w, const S* q) {
   const auto& model = *w.model;

@@ -1,12 +1,12 @@
 #pragma once
-// Forces that formulas give, from the values x of signals: generalised forces along signals,
+// Forces given by formulas of signals x: generalised forces along signals,
 //
 //   Q = Σ factor · y(x) along s,             power factor · y ṡ
 //   V(x):  −∂V/∂s along s for every s of x,  V̇ = Σ ∂V/∂s ṡ + ∂V/∂t
 //
-// The derivatives are tapes of their own (core/expression/gradient.cpp), so that forces have exact
-// derivatives again. Like motion laws, formulas are computed out of line for single numbers of a
-// level; directions from one state as eight derivatives of one evaluation.
+// Derivatives are tapes (core/expression/gradient.cpp), so that forces have exact derivatives. Like
+// motion laws, formulas are computed out of line for single numbers of a level; directions from one
+// state as eight derivatives of one evaluation.
 
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/run_steps.h>
@@ -14,18 +14,18 @@
 
 namespace momenta {
 
-/// A formula's outputs to `values`; `line` has room for its tape.
+/// Writes the outputs of a formula to `values`; `line` has room for its tape.
 template <class S>
 void formula_values(const Expression& formula, const S* x, int, S* line, S* values) {
   evaluate(formula, x, line, values);
 }
 
-/// The same of `count` variables in doubles, and on Dual8 in plain arrays, each number its value
-/// and eight derivatives.
+/// The same for `count` variables in doubles, and on Dual8 in plain arrays: value and eight
+/// derivatives of each number.
 void formula_in_doubles(const Expression& formula, const double* x, double* values);
 void formula_in_dual8(const Expression& formula, const double* x, int count, double* values);
 
-/// Rooms of numbers as plain doubles for the two below. One a thread, as long as the longest
+/// Scratch of plain doubles for the two functions below: one a thread, as long as the longest
 /// formula so far.
 double* formula_room(std::size_t size);
 
@@ -55,7 +55,7 @@ void formula_values(const Expression& formula, const Directions<W, L>* x, int co
   for (std::size_t i = 0; i < outputs; ++i) gather(room + (n + i) * dual8_numbers, values[i]);
 }
 
-/// The outputs of a formula force at the state. Needs poses, velocities where it takes rates.
+/// Outputs of a formula force at the state. Needs poses, velocities for rates.
 template <class Space, class S>
 const S* outputs_of(const Workspace<Space, S>& w,
                     const typename Model<Space>::FormulaForce& force) {
@@ -89,8 +89,8 @@ S formula_energy(const Workspace<Space, S>& w) {
   return energy;
 }
 
-/// Σ |V| and Σ |y| of what acts: how large the forces of formulas are, whether they balance or not
-/// [N, N m]. Needs velocities.
+/// Σ |V| + Σ |y| of all acts: size of the forces of formulas, balanced or not [N, N m]. Needs
+/// velocities.
 template <class Space>
 double formula_size(const Workspace<Space, double>& w) {
   double size = 0;
@@ -102,7 +102,7 @@ double formula_size(const Workspace<Space, double>& w) {
   return size;
 }
 
-/// The first formula that, or a derivative of which, is not finite; null: all are. Needs
+/// The first formula force with an output or derivative that is not finite; null: none. Needs
 /// velocities.
 template <class Space>
 const typename Model<Space>::FormulaForce* formula_without_value(
@@ -115,7 +115,7 @@ const typename Model<Space>::FormulaForce* formula_without_value(
   return nullptr;
 }
 
-/// Power of the forces without potential, and ∂V/∂t of those with one [W]. Needs velocities.
+/// Power of forces without potential, and ∂V/∂t of those with one [W]. Needs velocities.
 template <class Space, class S>
 S formula_power(const Workspace<Space, S>& w) {
   S power{};

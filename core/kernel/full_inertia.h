@@ -1,8 +1,8 @@
 #pragma once
-// M*_K with every entry by its name, (43): how bodies and children add to it, and how it turns and
-// shifts on the way to a parent where no row or column is known to vanish.
+// M*_K by named entries, (43): additions of bodies and children, turns and shifts on the way to a
+// parent where no row or column is known to vanish.
 //
-// Every function works on scalars that stay in registers.
+// All scalars stay in registers.
 
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/scalar/dual.h>
@@ -10,7 +10,7 @@
 
 namespace momenta {
 
-/// M* with every entry by its name.
+/// M* by named entries.
 template <class S>
 struct Full {
   S Axx, Axy, Axz, Ayy, Ayz, Azz, Hxx, Hxy, Hxz, Hyx, Hyy, Hyz, Hzx, Hzy, Hzz, Ixx, Ixy, Ixz, Iyy,
@@ -55,7 +55,7 @@ Spatial::ArticulatedInertia<S> blocks(const Full<S>& m) {
           {{m.Ixx, m.Ixy, m.Ixz, m.Iyy, m.Iyz, m.Izz}}};
 }
 
-// Turns of the full matrix about an axis, here called z: of a symmetric block, without its zz …
+// Turns of the full matrix about an axis, here z: of a symmetric block, without its zz …
 template <class S, class C>
 MOMENTA_INLINE void turn_symmetric(const C& c, const C& s, S& xx, S& xy, S& xz, S& yy, S& yz) {
   const C cs = c * s, ss = s * s;
@@ -95,7 +95,7 @@ MOMENTA_INLINE void turn_x(Full<S>& m, const C& c, const C& s) {
   turn_general(c, s, m.Hyy, m.Hyz, m.Hyx, m.Hzy, m.Hzz, m.Hzx, m.Hxy, m.Hxz);
 }
 
-/// The same by +90°, y ← −z, z ← y: nothing is rounded.
+/// The same by +90°, y ← −z, z ← y, without rounding.
 template <class S>
 MOMENTA_INLINE void right_turn_x(Full<S>& m) {
   const Full<S> r = m;
@@ -119,7 +119,7 @@ MOMENTA_INLINE void right_turn_x(Full<S>& m) {
   m.Izz = r.Iyy;
 }
 
-/// A screw about z of the full matrix: of a joint on one axis, and the way to a joint that is not
+/// Screw of the full matrix about z: for joints on one axis, and on the way to a joint that is not
 /// its parent's first.
 template <class S, class C>
 MOMENTA_INLINE void turn_and_shift_z(Full<S>& m, const C& c, const C& s, const C& d) {
@@ -141,7 +141,7 @@ MOMENTA_INLINE void turn_and_shift_z(Full<S>& m, const C& c, const C& s, const C
   m.Iyz = m.Iyz + d * m.Hxz;
 }
 
-/// + M_K of the body itself.
+/// Adds M_K of the body itself.
 template <class Link, class S>
 MOMENTA_INLINE void add_body(Full<S>& m, const Link& l) {
   m.Axx = m.Axx + l.m;
@@ -161,7 +161,7 @@ MOMENTA_INLINE void add_body(Full<S>& m, const Link& l) {
   m.Izz = m.Izz + l.J[5];
 }
 
-/// M_K of a body that carries nothing.
+/// Sets M_K of a body that carries nothing.
 template <class Link, class S>
 MOMENTA_INLINE void set_body(Full<S>& m, const Link& l) {
   m.Axy = m.Axz = m.Ayz = m.Hxx = m.Hyy = m.Hzz = S(0.0);

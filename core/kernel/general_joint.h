@@ -1,6 +1,6 @@
 #pragma once
-// The elimination of one joint of any kind, one record a joint: what both recursions do wherever
-// the fast path for revolute joints does not apply.
+// Elimination of a joint of any kind, one record a joint: for both recursions, off the fast path
+// for revolute joints.
 //
 //   M_j = Eᵀ M* E + I_r,  M' = M* − M*E M_j⁻¹ EᵀM*           (46), (47); I_r: rotor.h
 //   e = r − Eᵀ D,   D' = D + M*E M_j⁻¹ e                     (48)
@@ -27,7 +27,7 @@ namespace momenta {
 template <class Space, class S>
 struct JointRecord;
 
-/// M_j of a revolute joint, by its link, from what its body and all it carries have about it.
+/// M_j of a revolute joint from the inertia of its subtree about it, with the link's rotor.
 template <class Link, class S>
 MOMENTA_INLINE S pivot_of(const Link& l, const S& inertia) {
   return l.has_rotor ? inertia + l.rotor : inertia;
@@ -45,8 +45,8 @@ struct JointRecord<Spatial, S> {
   Mat3<S> H;                                      ///< several dofs: H I⁻¹ …
   Sym3<S> I, A;  ///< … I⁻¹ (J⁻¹ with a rotor), of a free joint (A − H I⁻¹Hᵀ)⁻¹
   Vec3<S> x, y;  ///< … I⁻¹ e_ω, and of a free joint e_v − H I⁻¹ e_ω
-  Spatial::Motion<S> c;           ///< acceleration form: what W has beside 𝒯ⱽ A_L
-  UserRecord<S>* user = nullptr;  ///< of a user joint, owned beside the records
+  Spatial::Motion<S> c;           ///< acceleration form: W − 𝒯ⱽ A_L
+  UserRecord<S>* user = nullptr;  ///< user joints alone; owned beside the records
 };
 template <class S>
 struct JointRecord<Planar, S> {
@@ -56,28 +56,27 @@ struct JointRecord<Planar, S> {
   Planar::Force<S> D, h;
   S pivot{}, e{};
   S value{};   ///< position of the joint
-  S moment{};  ///< of the subtree's weight about O_K
+  S moment{};  ///< moment of the subtree's weight about O_K
   Planar::Motion<S> c;
 };
 
-/// Whether the determinant of a matrix with diagonal a, b, c is more than rounding. A slender rod
-/// on a spherical joint has no inertia about itself, however it lies. Entries are as exact as the
-/// largest, so the determinant is as exact as the product of the two largest diagonals with the
-/// largest.
+/// Whether the determinant of a matrix with diagonal a, b, c exceeds rounding (a slender rod on a
+/// spherical joint has no inertia about itself). Entries are as exact as the largest, so the
+/// determinant is as exact as the product of the two largest diagonals with the largest.
 template <class S>
 MOMENTA_INLINE bool determinant_positive(const S& determinant, const S& a, const S& b, const S& c) {
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
   const S bound = rounding * ((a * b + (b * c + c * a)) * (a + (b + c)));
   return all_positive(determinant - bound);
 }
-/// The same of the matrix's pivots d: all positive, and their product more than rounding.
+/// The same for pivots d: all positive, and their product beyond rounding.
 template <class S>
 bool pivots_positive(const Vec3<S>& d, const Sym3<S>& from) {
   return all_positive(d[0]) && all_positive(d[1]) && all_positive(d[2]) &&
          determinant_positive(d[0] * d[1] * d[2], from.x[0], from.x[3], from.x[5]);
 }
 
-/// I⁻¹ and h = H I⁻¹ of a joint that leaves ω free.
+/// I⁻¹ and h = H I⁻¹ of a joint with free ω.
 template <class S>
 bool eliminate_angular(const Spatial::ArticulatedInertia<S>& m, Sym3<S>& inverse_I, Mat3<S>& h) {
   Vec3<S> pivots;
@@ -90,7 +89,7 @@ bool eliminate_angular(const Spatial::ArticulatedInertia<S>& m, Sym3<S>& inverse
   return true;
 }
 
-/// Free joints: ω by its 3 × 3 block, then v by the Schur complement; nothing is left, M' = 0.
+/// Free joints: ω by its 3 × 3 block, then v by the Schur complement; M' = 0.
 template <class S>
 bool eliminate_free(Spatial::ArticulatedInertia<S>& m, JointRecord<Spatial, S>& x) {
   if (!eliminate_angular(m, x.I, x.H)) return false;
@@ -105,7 +104,7 @@ bool eliminate_free(Spatial::ArticulatedInertia<S>& m, JointRecord<Spatial, S>& 
   return true;
 }
 
-/// Spherical joints with a rotor.
+/// Eliminates spherical joints with a rotor.
 template <class S>
 bool eliminate_turned(double rotor, Spatial::ArticulatedInertia<S>& m, JointRecord<Spatial, S>& x) {
   auto with_rotor = m;
@@ -197,7 +196,7 @@ typename Space::template Force<S> reduced_momentum(const typename Model<Space>::
   return P;
 }
 
-/// u (nv) of this joint; W becomes W + E u.
+/// u (nv) of the joint; W becomes W + E u.
 template <class Space, class S>
 void solve_joint(const typename Model<Space>::Body& b, const JointRecord<Space, S>& x,
                  typename Space::template Motion<S>& W, S* u) {

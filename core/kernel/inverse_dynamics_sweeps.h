@@ -1,6 +1,6 @@
 #pragma once
 // Inverse dynamics (recursive Newton-Euler) in space, (q, u, u̇, t) → τ, in the frames of the other
-// recursions: the forces a motion takes, and the bias of composite_sweeps.h.
+// recursions: the forces of a motion, and the bias of composite_sweeps.h.
 //
 //   outward   ω, α of every body, a: acceleration of O. A point r of the body has a + K r,
 //               K = α~ + ω~ ω~
@@ -10,9 +10,8 @@
 //             Σ = ½ tr(J) 1 − J stands for J: axial(K Σ) = J α + ω × J ω in one product.
 //   inward    F_L += 𝒯ᶠ F,  τ = Eᵀ F
 //
-// Accelerations are those of points, not derivatives in body axes: linear velocities drop out.
-// Gravity is an acceleration −g of the ground.
-// Masses are regrouped first: mass_moments.h.
+// Accelerations of points, not derivatives in body axes: linear velocities drop out. Gravity is an
+// acceleration −g of the ground. Masses are regrouped first: mass_moments.h.
 
 #include <momenta/core/kernel/acceleration_field.h>
 #include <momenta/core/kernel/place_links.h>
@@ -40,8 +39,8 @@ class InverseDynamicsSweeps<Spatial, S> {
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(slots_.size()) {}
 
-  /// τ (nv) = M u̇ + bias − weights from (q, u, u̇, t): every generalised force but the weights'.
-  /// In and Out index like pointers to S. O(bodies).
+  /// τ (nv) = M u̇ + bias − weights from (q, u, u̇, t): all generalised forces but weights. In and
+  /// Out index like pointers to S. O(bodies).
   template <class In, class InRate, class Out>
   void operator()(const S& t, const In& q, const In& u, const InRate& udot, Out tau) {
     place(t, q);
@@ -50,7 +49,7 @@ class InverseDynamicsSweeps<Spatial, S> {
     for (const auto& [u_at, rotor] : tree_->rotors) tau[u_at] = S(tau[u_at]) + rotor * udot[u_at];
   }
 
-  /// Sines, cosines and edges at (q, t): for `bias` and for who shares them.
+  /// Sines, cosines and edges at (q, t): for `bias` and for other users.
   template <class In>
   void place(const S& t, const In& q) {
     place_links(
@@ -66,11 +65,11 @@ class InverseDynamicsSweeps<Spatial, S> {
 
   const Angles<S>& angles() const { return angles_; }
   const MassMoments<S>& moments(std::size_t k) const { return moments_[k]; }
-  /// Of a spherical joint: child components to the parent's.
+  /// Axes of a spherical joint: child components to the parent's.
   const Mat3<S>& spherical_axes(const Link& l) const {
     return axes_[static_cast<std::size_t>(l.record)];
   }
-  /// The way to body k at this configuration; not of spherical joints.
+  /// The edge of body k at this configuration; not for spherical joints.
   Spatial::Edge<S> edge(std::size_t k) const {
     const Link& l = tree_->links[k];
     if (l.kind == LinkKind::general) return joints_[static_cast<std::size_t>(l.record)].edge;
@@ -96,12 +95,12 @@ class InverseDynamicsSweeps<Spatial, S> {
   }
 
   struct Origins {
-    Vec3<S> own, parent;  ///< accelerations of O, of the parent's O, each in its own axes
+    Vec3<S> own, parent;  ///< accelerations of O and of the parent's O, each in its own axes
   };
   const LinkTree* tree_;
   Angles<S> angles_;
   std::vector<MassMoments<S>> moments_;
-  std::vector<PlainWrench<S>> wrenches_;  ///< of the bodies alone
+  std::vector<PlainWrench<S>> wrenches_;  ///< wrenches of the bodies alone
   std::vector<Mat3<S>> axes_;
   std::vector<JointRecord<Spatial, S>> joints_;
   std::vector<UserRecord<S>> users_;
@@ -126,7 +125,7 @@ void InverseDynamicsSweeps<Spatial, S>::outward(const In& u, const InRate& udot)
     } else {
       PlainWrench<S>& w = wrenches_[k];
       const S c = angles_.cosine(k), s = angles_.sine(k), own = u[l.u];
-      if (l.parent < 0) {  // ω and α along the revolute joint, nothing to pass on but its moment
+      if (l.parent < 0) {  // ω and α along the joint: only its moment remains
         const Vec3<double>& weight = tree_->weight[k];
         const MassMoments<S>& b = moments_[k];
         at = {zero,
@@ -161,7 +160,7 @@ void InverseDynamicsSweeps<Spatial, S>::outward(const In& u, const InRate& udot)
         turn_outward_z(c, s, at.ex, at.ey);
         at.oz = at.oz + own;
         if constexpr (moving) at.ez = at.ez + udot[l.u];
-        // Points on the axis may be taken as the child's.
+        // A point on the axis is the child's as well.
         const auto K = acceleration_field(at.ox, at.oy, at.oz, at.ex, at.ey, at.ez);
         at.ax = at.ax + l.d * K.xz;
         at.ay = at.ay + l.d * K.yz;
@@ -279,8 +278,8 @@ void InverseDynamicsSweeps<Spatial, S>::inward(Out tau) {
   }
 }
 
-// Mass on other joints is not the parent's: its force m a is passed on with the rest, less the
-// share m a_L that the parent itself will pass on.
+// Mass on other joints stays theirs: its force m a is passed on with the rest, less the share m a_L
+// that the parent itself will pass on.
 template <class S>
 template <class Out>
 void InverseDynamicsSweeps<Spatial, S>::any_inward(std::size_t k, Out tau, PlainWrench<S>& w) {

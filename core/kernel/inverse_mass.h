@@ -1,12 +1,11 @@
 #pragma once
-// M⁻¹ x by the two sweeps without what M* costs: with h, M_j⁻¹ and the frames of an evaluation,
+// M⁻¹ x by two sweeps without the cost of M*: with h, M_j⁻¹ and the frames of an evaluation,
 //
 //   inward    e = x − Eᵀ D,  D' = D + h e,  D_L += 𝒯ᶠ D'          (48), (44) without Ω_t
 //   outward   u = M_j⁻¹ e − hᵀ W,  Ω = W + E u                    (45)
 //
-// The right-hand side may be wider than the numbers of the evaluation: after one on directions from
-// a state, whose values are alike in all lanes, packs of right-hand sides give that many columns of
-// M⁻¹ at once.
+// After an evaluation on directions, whose values are equal in all lanes, packs of right-hand sides
+// give that many columns of M⁻¹ at once.
 
 #include <momenta/core/kernel/momentum_sweeps.h>
 #include <momenta/core/kernel/planar_momentum_sweeps.h>
@@ -15,7 +14,7 @@
 
 namespace momenta {
 
-/// A number of the evaluation as a factor of right-hand sides.
+/// Factor of right-hand sides: the value of a number of the evaluation.
 template <class X>
 MOMENTA_INLINE const X& value_in(const X& s) {
   return s;

@@ -1,14 +1,12 @@
 #pragma once
-// Exact derivatives of (q̇, ṗ) by dual numbers through the recursion, and with the structure of
+// Exact derivatives of (q̇, ṗ) by dual numbers through the recursion, using the structure of
 // Hamilton's equations where they hold. In canonical coordinates q̇ = ∂H/∂p, ṗ = −∂H/∂q + Q, hence
 //
 //   ∂q̇/∂p = M⁻¹,  ∂ṗ/∂p = −(∂q̇/∂q)ᵀ + ∂Q/∂p,  ∂Q/∂p = −C M⁻¹ for dampers C on the joints,
 //
-// so only the nq directions of q need dual numbers, W of them side by side in the lanes of a
-// register, and on trees of revolute joints M⁻¹ comes from as many solves at once with the M* of
-// that same pass. Quasi-velocities (spherical, free joints) and dampers between bodies have no such
-// structure: there, and where joints of other kinds are among the revolute joints, all directions
-// are dual.
+// so only the nq directions of q need dual numbers, W of them in the lanes of a register, and on
+// trees of revolute joints M⁻¹ comes from as many solves at once with the M* of the pass. With
+// quasi-velocities, dampers between bodies or other joints all directions are dual.
 
 #include <momenta/core/kernel/momentum_recursion.h>
 
@@ -16,7 +14,7 @@
 
 namespace momenta {
 
-/// The recursion along N directions at once; S: the number inside the dual ones.
+/// The recursion along N directions at once; S: scalar of the dual numbers.
 template <class Space, int N, class S = double>
 class DirectionalPass {
  public:
@@ -32,12 +30,12 @@ class DirectionalPass {
         sweeps_(links),
         w_(*links.model) {}
 
-  /// Values of q and p, all directions zero.
+  /// Sets values of q and p, all directions zero.
   void set(const double* q_values, const double* p_values) {
     for (std::size_t i = 0; i < q.size(); ++i) q[i] = D(q_values[i]);
     for (std::size_t i = 0; i < p.size(); ++i) p[i] = D(p_values[i]);
   }
-  /// qdot and pdot with their derivatives along the directions in q and p.
+  /// Computes qdot and pdot with derivatives along the directions in q and p.
   bool operator()(double t) {
     if (!momentum_recursion(sweeps_, w_, D(t), q.data(), p.data(), u.data(), pdot.data()))
       return false;
@@ -59,7 +57,7 @@ class DirectionalPass {
   Workspace<Space, D> w_;
 };
 
-/// True where the structure above holds for the model.
+/// Whether the structure above holds for the model.
 template <class Space>
 bool is_hamiltonian(const Model<Space>& model) {
   for (const auto& b : model.bodies)
@@ -70,16 +68,15 @@ bool is_hamiltonian(const Model<Space>& model) {
     if (bushing.damping != 0 || bushing.rotational_damping != 0) return false;
   for (const auto& spring : model.coordinate_springs)
     if (spring.damping != 0) return false;
-  if (!model.formula_forces.empty()) return false;  // they may take rates
-  return model.wrenches.empty();  // in body axes, or with a torque, one need not have a potential
+  if (!model.formula_forces.empty()) return false;  // may take rates
+  return model.wrenches.empty();  // in body axes, or with a torque, need not have a potential
 }
-/// The same, and all joints are revolute joints. Out of line: compiled for any machine.
+/// The same, with revolute joints alone. Out of line: compiled for any machine.
 bool is_hamiltonian_on_revolutes(const LinkTree& tree);
 bool is_hamiltonian_on_revolutes(const PlanarTree& tree);
 
 /// ∂(q̇, ṗ)/∂(q, p), W directions a pass. Cost ⌈nq/W⌉ dual evaluations and ⌈nv/W⌉ solves with W
-/// right-hand sides where the structure holds on revolute joints alone, ⌈(nq + nv)/W⌉ evaluations
-/// elsewhere.
+/// right-hand sides with the structure on revolute joints, else ⌈(nq + nv)/W⌉ evaluations.
 template <class Space, class Lanes>
 class JacobianPass;
 
@@ -97,7 +94,7 @@ class JacobianPass<Space, Pack<W, L>> {
         x_(pass_.p.size()),
         result_(x_.size()) {}
 
-  /// Into columns of nq + nv numbers, each `stride` after the one before. False as the recursion.
+  /// Writes into columns of nq + nv numbers, `stride` apart. False as for the recursion.
   bool operator()(double t, const double* q, const double* p, double* J, std::ptrdiff_t stride) {
     const int nq = model_->nq, nv = model_->nv;
     const int directions = structured_ ? nq : nq + nv;
@@ -127,7 +124,7 @@ class JacobianPass<Space, Pack<W, L>> {
   int singular_joint() const { return pass_.singular_joint(); }
 
  private:
-  /// M⁻¹ into the first nv rows of as many columns, −C M⁻¹ onto the next.
+  /// Writes M⁻¹ into the first nv rows of as many columns, adds −C M⁻¹ to the next.
   void inverse_mass(double* J, std::ptrdiff_t stride) {
     const int nv = model_->nv;
     for (int first = 0; first < nv; first += W) {

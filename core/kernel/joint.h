@@ -1,8 +1,8 @@
 #pragma once
-// What a joint does in each algebra: its place at q, its motion E u, and the projection Eᵀ F. All E
-// but those of user joints are constant in body axes (revolute, prismatic: z; helical: z twice, E =
-// (0, 0, pitch; 0, 0, 1); spherical, free: unit matrices), so Ė of eq. (35) vanishes. A user joint
-// brings E and Ė with its formula. Other kinds are chains of these.
+// Joints in each algebra: place at q, motion E u, projection Eᵀ F. All E but those of user joints
+// are constant in body axes (revolute, prismatic: z; helical: z twice, E = (0, 0, pitch; 0, 0, 1);
+// spherical, free: unit matrices), so Ė of eq. (35) vanishes. A user joint brings E and Ė with its
+// formula. Other kinds are chains of these.
 
 #include <momenta/core/kernel/planar_joint.h>
 #include <momenta/core/kernel/spatial_joint.h>

@@ -1,14 +1,14 @@
 #pragma once
-// Stops at the limits of a joint: a spring and a damper on one side, whose force has a continuous
-// derivative. With x how far q is beyond a limit and v = ẋ, the push back is
+// Stops at the limits of a joint: one-sided springs and dampers, whose force has a continuous
+// derivative. With x the way of q beyond a limit and v = ẋ, the push back is
 //
 //   F(x, v) = k φ(x) + c ψ(x) v,  0 for x <= 0
 //   φ = x²/2w,  ψ = s²(3 − 2s), s = x/w,   0 < x < w
 //   φ = x − w/2,  ψ = 1,                   x >= w
 //
-// so that a joint far beyond moves as one with the spring k at rest half a width behind the limit
-// and the damper c. The spring stores k x³/6w, then k (x²/2 − w x/2 + w²/6). Moving back, the
-// damper may pull: the force is no contact that lets go at once.
+// so a joint far beyond moves as one with the spring k, at rest half a width behind the limit, and
+// the damper c. The spring stores k x³/6w, then k (x²/2 − w x/2 + w²/6). On the way back the damper
+// may pull, unlike a contact.
 
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scalar/pack.h>
@@ -38,7 +38,7 @@ template <class S>
 __attribute__((noinline)) S stop_force(const JointStop& stop, const S& q, const S& u) {
   return stop_push(stop, S(stop.least - q), S(-u)) - stop_push(stop, S(q - stop.largest), u);
 }
-/// The same in each lane, of which some may be beyond.
+/// The same lane by lane, some lanes beyond a limit.
 template <int W, int L>
 __attribute__((noinline)) Pack<W, L> stop_force(const JointStop& stop, const Pack<W, L>& q,
                                                 const Pack<W, L>& u) {
@@ -53,7 +53,7 @@ __attribute__((noinline)) Pack<W, L> stop_force(const JointStop& stop, const Pac
   return force;
 }
 
-/// What the spring of one side stores.
+/// Energy of the spring of one side.
 template <class S>
 S stop_energy(const JointStop& stop, const S& x) {
   if (!(value_of(x) > 0)) return S(0.0);
@@ -61,13 +61,13 @@ S stop_energy(const JointStop& stop, const S& x) {
   if (value_of(x) < w) return (k / (6 * w)) * (x * x * x);
   return k * (0.5 * (x * x) - (0.5 * w) * x + S(w * w / 6));
 }
-/// And both [J].
+/// Energy of both springs [J].
 template <class S>
 S stored_energy(const JointStop& stop, const S& q) {
   return stop_energy(stop, S(stop.least - q)) + stop_energy(stop, S(q - stop.largest));
 }
 
-/// What the dampers of the stops take [W].
+/// Loss of the dampers of the stops [W].
 template <class S>
 S stop_loss(const JointStop& stop, const S& q, const S& u) {
   JointStop damper = stop;

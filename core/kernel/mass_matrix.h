@@ -1,13 +1,13 @@
 #pragma once
 // The joint-space mass matrix M of (3) and (7) by composite inertias: M_KL = E_Lᵀ (𝒯ᶠ M^c_K E_K)
-// for every ancestor L of K, M^c the rigid inertia of K's subtree. Only these entries are nonzero.
-// Cost O(bodies × depth).
+// for every ancestor L of K, M^c the rigid inertia of K's subtree. Other entries are zero. O(bodies
+// × depth).
 
 #include <momenta/core/kernel/sweeps.h>
 
 namespace momenta {
 
-/// Rigid inertias of all subtrees into body[k].M; `visit(k)` sees body k once its own is complete.
+/// Rigid inertias of all subtrees into body[k].M; `visit(k)` follows each once complete.
 template <class Space, class S, class Visit>
 void composite_inertias_inward(Workspace<Space, S>& w, Visit&& visit) {
   for (std::size_t k = 0; k < w.body.size(); ++k) {
@@ -23,7 +23,7 @@ void composite_inertias_inward(Workspace<Space, S>& w, Visit&& visit) {
   }
 }
 
-/// M^c E of one column of joint k's E, and its own block's row: Eᵀ M^c E.
+/// M^c E of one column of joint k's E, and the row of its own block: Eᵀ M^c E.
 template <class Space, class S>
 typename Space::template Force<S> composite_column(const Workspace<Space, S>& w, std::size_t k,
                                                    int column, S* row) {
@@ -38,7 +38,7 @@ typename Space::template Force<S> composite_column(const Workspace<Space, S>& w,
   return force;
 }
 
-/// The diagonal of M (nv); needs edges current. O(bodies).
+/// The diagonal of M (nv). Needs edges. O(bodies).
 template <class Space, class S>
 void mass_diagonal_inward(Workspace<Space, S>& w, S* diagonal) {
   composite_inertias_inward(w, [&](std::size_t k) {
@@ -51,8 +51,8 @@ void mass_diagonal_inward(Workspace<Space, S>& w, S* diagonal) {
   });
 }
 
-/// Calls entry(row, column, value) with row ≤ column places in u; needs edges current. One call per
-/// pair of dofs that lie on one path to the root, upper triangle only.
+/// Calls entry(row, column, value), row ≤ column places in u, for each pair of dofs on one path to
+/// the root. Needs edges.
 template <class Space, class S, class Entry>
 void mass_matrix_inward(Workspace<Space, S>& w, Entry&& entry) {
   const auto& model = *w.model;

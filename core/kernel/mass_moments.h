@@ -1,9 +1,8 @@
 #pragma once
-// Mass on the axis of a revolute joint moves with the parent as well as with the child, wherever
-// the revolute joint stands. All the mass a revolute joint carries, taken at O, and c_z and Σ_zz of
-// its body are therefore given to the parent once and for all; m a and whatever c_z and Σ_zz cost
-// are saved. A spherical joint gives all its mass, at O. Torques are not touched: what is given
-// away has no moment about the joint.
+// Mass on the axis of a revolute joint moves with the parent as well as with the child. All the
+// mass the joint carries, taken at O, and c_z and Σ_zz of its body are therefore given to the
+// parent once and for all, which saves m a and their cost. A spherical joint gives all its mass, at
+// O. Torques stay: mass given away has no moment about the joint.
 //   parent:  c += m r + c_z z,  Σ += m r rᵀ + c_z (r zᵀ + z rᵀ) + Σ_zz z zᵀ
 
 #include <momenta/core/kernel/revolute.h>
@@ -12,8 +11,8 @@
 
 namespace momenta {
 
-/// c and Σ (xx xy xz yy yz zz) about O of what moves with a body, other kinds of joints beyond
-/// revolute joints and spherical joints excepted.
+/// c and Σ (xx xy xz yy yz zz) about O of a body with the mass given to it over revolute and
+/// spherical joints.
 template <class S>
 struct MassMoments {
   double c[3]{}, s[6]{};

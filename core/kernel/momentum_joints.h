@@ -1,5 +1,5 @@
 #pragma once
-// Joints on one axis, and free and user joints, in the momentum recursion, both ways.
+// Joints on one axis, free and user joints in the momentum recursion, both sweeps.
 
 #include <momenta/core/kernel/axis_joint.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
@@ -120,7 +120,7 @@ void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out
     if constexpr (Gravity) net = Spatial::weight(S(b.subtree_mass), x.moment, g);
     Spatial::Force<S> P;
     if (b.kind == JointKind::free && b.parent < 0) {
-      P = x.h;  // p is all of P*
+      P = x.h;  // all of P*
     } else {
       P = Spatial::momentum(x.M, V);  // (42)
       P += x.D;

@@ -1,17 +1,15 @@
 #pragma once
-// The recursion of the paper as the rest of the toolkit calls it: (q, p, t) → (u, ṗ), u → p, and
-// the way back by M⁻¹. The two sweeps are in momentum_sweeps.h and planar_momentum_sweeps.h;
-// wrenches between points of bodies depend on poses and velocities of several bodies, which are
-// known only after them: then, and only then, a third sweep adds Eᵀ T* of those wrenches to ṗ.
+// The recursion of the paper for the rest of the toolkit: (q, p, t) → (u, ṗ), u → p, and M⁻¹. The
+// two sweeps are in momentum_sweeps.h and planar_momentum_sweeps.h; wrenches between points of
+// bodies need poses and velocities known only after them: a third sweep adds their Eᵀ T* to ṗ.
 
 #include <momenta/core/kernel/body_forces.h>
 #include <momenta/core/kernel/inverse_mass.h>
 
 namespace momenta {
 
-/// u (nv) and ṗ (nv) from (q, p, t), eqs. (35), (37)-(48). Returns false when a joint's articulated
-/// inertia is not positive (sweeps.singular_joint()). `w` is used by the third sweep alone.
-/// O(bodies).
+/// u (nv) and ṗ (nv) from (q, p, t), eqs. (35), (37)-(48). False at a singular joint
+/// (sweeps.singular_joint()). `w` serves the third sweep alone. O(bodies).
 template <class Space, class S>
 bool momentum_recursion(MomentumSweeps<Space, S>& sweeps, Workspace<Space, S>& w, const S& t,
                         const S* q, const S* p, S* u, S* pdot) {

@@ -1,12 +1,12 @@
 #pragma once
-// Revolute joints on the inward way of the momentum recursion, (46)-(48), (43), (44): inside a
-// chain, where all that passes from body to body stays in registers, and anywhere else.
+// Revolute joints in the inward sweep of the momentum recursion, (46)-(48), (43), (44): inside a
+// chain, where everything passed on stays in registers, and elsewhere.
 
 #include <momenta/core/kernel/momentum_sweeps.h>
 
 namespace momenta {
 
-/// (46)-(48) of a revolute joint whose M*, D, G are complete.
+/// (46)-(48) of a revolute joint with complete M*, D, G.
 template <bool Gravity, class S>
 MOMENTA_INLINE void eliminate_revolute(const Articulated<S>& articulated, const S& p,
                                        const S& inverse, RevoluteRecord<S>& w, Eliminated<S>& r) {
@@ -29,8 +29,8 @@ MOMENTA_INLINE void eliminate_revolute(const Articulated<S>& articulated, const 
   }
 }
 
-/// (46)-(48) of a revolute joint that carries nothing: h, M' and M_j⁻¹ are constants, `moment` the
-/// body's m c.
+/// (46)-(48) of a revolute joint that carries nothing: h, M' and M_j⁻¹ are constants; `moment`: m c
+/// of the body.
 template <bool Gravity, class S, class C>
 MOMENTA_INLINE void hand_on_leaf(const RevoluteColumn<S>& h, const Reduced<S>& M, const S& inverse,
                                  const C (&moment)[3], const S& p, RevoluteRecord<S>& w,
@@ -52,7 +52,7 @@ MOMENTA_INLINE void hand_on_leaf(const RevoluteColumn<S>& h, const Reduced<S>& M
   }
 }
 
-/// The revolute joint's own screw; what the outward sweep needs is stored before.
+/// The revolute joint's own screw, after storing what the outward sweep needs.
 template <bool Gravity, class S, class C>
 MOMENTA_INLINE void turn_revolute(Eliminated<S>& r, const S& c, const S& s, const C& d,
                                   RevoluteRecord<S>& w) {
@@ -76,7 +76,7 @@ MOMENTA_INLINE void turn_revolute(Eliminated<S>& r, const S& c, const S& s, cons
   }
 }
 
-/// What is found at a revolute joint on the ground: nothing is passed on.
+/// A revolute joint on the ground: nothing is passed on.
 template <bool Gravity, class S>
 MOMENTA_INLINE void eliminate_root(const Articulated<S>& articulated, const S& p, const S& pivot,
                                    RevoluteRecord<S>& w) {
@@ -88,7 +88,7 @@ MOMENTA_INLINE void eliminate_root(const Articulated<S>& articulated, const S& p
   }
 }
 
-/// (46)-(48) of a joint that carries nothing, by its link.
+/// (46)-(48) of a joint that carries nothing, from its link.
 template <bool Gravity, class S>
 MOMENTA_INLINE void hand_on_leaf(const LinkTree& tree, const Link& l, const S& p,
                                  RevoluteRecord<S>& w, Eliminated<S>& r) {
@@ -99,10 +99,9 @@ MOMENTA_INLINE void hand_on_leaf(const LinkTree& tree, const Link& l, const S& p
   hand_on_leaf<Gravity>(h, M, S(leaf.inverse), l.moment, p, w, r);
 }
 
-/// Revolute joints inside a chain from `end` − 1 down, as far as their turns are of one kind, and
-/// the joint on the ground that they end at; returns the end of what is left. All that passes from
-/// body to body stays in registers. The next body joins what arrives at it in the same breath:
-/// products and signs of the turn before go into its sums.
+/// Revolute joints inside a chain from `end` − 1 down, while their turns are of one kind, and the
+/// joint on the ground at its end; returns the end of the rest. Everything passed on stays in
+/// registers, and products and signs of a turn go straight into the sums of the next body.
 template <class S>
 template <Turn turn, bool Gravity, class In>
 std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& p,
@@ -137,7 +136,7 @@ std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& 
           singular_joint_ = static_cast<int>(k);
         return k;
       }
-      const Eliminated<S> last = r;  // whose address is taken
+      const Eliminated<S> last = r;  // `last`: its address is taken, r stays in registers
       carry_last<turn, Gravity>(last, l, from);
       return k;
     }
@@ -152,8 +151,8 @@ std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& 
   }
 }
 
-/// Other revolute joints from `end` − 1 down, one after another: at branches, on the ground, beside
-/// a first child. What passes from a first child to its parent stays in registers here too.
+/// Other revolute joints from `end` − 1 down, one by one: at branches, on the ground, beside a
+/// first child. A first child's share stays in registers here too.
 template <class S>
 template <bool Gravity, class In>
 std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const In& p,

@@ -1,16 +1,16 @@
 #pragma once
-// Spherical joints in the momentum recursion, both ways, one after the other: what passes between
-// neighbours stays in registers.
+// Spherical joints in the momentum recursion, both sweeps, one after the other; what neighbours
+// pass on stays in registers.
 //
 // A spherical joint leaves its body no angular inertia towards the parent: M' = (A', 0; 0, 0) with
-// A' = A − H I⁻¹ Hᵀ, D' = (D_f + H I⁻¹ e, p). What arrives at the parent is A' turned, and what its
-// step r makes of it: H = −A r̃, I = r̃ H. Where a body carries nothing, A' and the factors of I are
-// constants, D = 0 and e = p. On the ground nothing is passed on, and v = 0:
+// A' = A − H I⁻¹ Hᵀ, D' = (D_f + H I⁻¹ e, p). At the parent arrives A' turned, and shifted by the
+// step r: H = −A r̃, I = r̃ H. Where a body carries nothing, A' and the factors of I are constants, D
+// = 0 and e = p. On the ground nothing is passed on, and v = 0:
 //
 //   ω = I⁻¹ e,  ṗ = G × Rᵀg − ω × p
 //
-// Where all bodies are tops, on the ground and carrying nothing, that is the whole evaluation:
-// there are no sweeps.
+// Where all bodies are tops, on the ground and carrying nothing, that is the whole evaluation,
+// without sweeps.
 
 #include <momenta/core/kernel/momentum_sweeps.h>
 
@@ -56,8 +56,8 @@ void MomentumSweeps<Spatial, S>::turn_tops(const In& q, const In& p, Out u, Out 
   }
 }
 
-/// Spherical joints from `end` − 1 down, as far as their bodies follow each other; returns the end
-/// of what is left.
+/// Spherical joints from `end` − 1 down, while their bodies follow each other; returns the end of
+/// the rest.
 template <class S>
 template <bool Gravity, class In>
 std::size_t MomentumSweeps<Spatial, S>::sphericals_inward(std::size_t end, const In& q, const In& p,
@@ -114,7 +114,7 @@ std::size_t MomentumSweeps<Spatial, S>::sphericals_inward(std::size_t end, const
   return k;
 }
 
-/// Spherical joints from k up, as long as each is the first its parent carries; returns the last.
+/// Spherical joints from k up, while each is its parent's first child; returns the last.
 template <class S>
 template <bool Gravity, class In, class Out>
 std::size_t MomentumSweeps<Spatial, S>::sphericals_outward(std::size_t k, const In& q, Out u,

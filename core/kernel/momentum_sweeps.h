@@ -11,11 +11,11 @@
 //             P* = M' W + D'                           (42)
 //             ṗ = Eᵀ (T* − W × P*) + joint force       (35), T* = weight of the subtree at G
 //
-// P* itself is never formed: about the revolute joint's axis Ω × P* takes ten numbers of M'
+// P* is never formed: about the revolute joint's axis Ω × P* takes ten numbers of M'
 // (turning_rate). Weight needs no accumulated T*: masses of subtrees are constants.
 //
-// What a body passes to its parent stays in registers when the parent is the body before it; other
-// children leave it in the parent's slot. Wrenches between points of bodies need a third sweep.
+// A body's share for its parent stays in registers when the parent is the body before; other
+// children leave theirs in the parent's slot. Wrenches between points of bodies need a third sweep.
 
 #include <momenta/core/kernel/forces.h>
 #include <momenta/core/kernel/place_links.h>
@@ -25,25 +25,25 @@
 
 namespace momenta {
 
-/// What the outward sweep needs of a revolute joint, body axes.
+/// Record of a revolute joint for the outward sweep, body axes.
 template <class S>
 struct RevoluteRecord {
-  RevoluteTurning<S> M;  ///< of M'
+  RevoluteTurning<S> M;  ///< part of M'
   RevoluteColumn<S> h;
   S Dfx, Dfy, Dnx, Dny;  ///< D'
   S inverse, y0;         ///< M_j⁻¹, M_j⁻¹ e
-  S Gx, Gy;              ///< across the revolute joint
+  S Gx, Gy;              ///< G across the joint's axis
 };
 
-/// What it needs of a spherical joint. R: child components to the parent's. Of a joint on the
-/// ground R, A and Df are not found: its origin rests, and gravity turns by the quaternion.
+/// Record of a spherical joint for the outward sweep. R: child components to the parent's. On the
+/// ground R, A and Df are not computed: the origin rests, and gravity turns by the quaternion.
 template <class S>
 struct SphericalRecord {
   Mat3<S> R;
   SphericalPivot<S> pivot;
   Sym3<S> A;              ///< M' = (A, 0; 0, 0)
   Vec3<S> Df, p, G;       ///< D' = (Df, p); first moment of the subtree
-  bool constant = false;  ///< pivot and A are: eliminate_leaves()
+  bool constant = false;  ///< pivot and A are constant: eliminate_leaves()
 };
 
 template <class Space, class S>
@@ -67,9 +67,8 @@ class MomentumSweeps<Spatial, S> {
     tops_alone_ = tops_alone();
   }
 
-  /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. In and Out index
-  /// like pointers to S. False when a joint's articulated inertia is not positive:
-  /// singular_joint().
+  /// u (nv) and the open chain's ṗ (nv), without forces between points of bodies. In and Out index
+  /// like pointers to S. False at a singular joint: singular_joint().
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
     if (tops_alone_) {
@@ -86,18 +85,16 @@ class MomentumSweeps<Spatial, S> {
                                      : inward<false>(q, p) && outward<false>(q, u, pdot);
   }
 
-  /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out:
-  /// inverse_mass.h. O(bodies).
+  /// M⁻¹ x (nv) at the last configuration, without prescribed motion: inverse_mass.h. O(bodies).
   template <class In, class Out>
   void inverse_mass_times(const In& x, Out result);
-  /// The same on S or, from sweeps on directions, on packs of right-hand sides.
+  /// The same for S or, after sweeps on directions, for packs of right-hand sides.
   /// @pre S, or revolute joints alone.
   template <class X, class In, class Out>
   void inverse_mass_times(MassSolution<Spatial, X>& solution, const In& x, Out result);
 
   int singular_joint() const { return singular_joint_; }
-  /// Of a remaining tree: what branches leave in a slot before an evaluation, and find there after
-  /// it.
+  /// In a remaining tree: slots that branches fill before an evaluation, and read after it.
   Articulated<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
   const OutwardMotion<S>& motion(int slot) const {
     return outward_slots_[static_cast<std::size_t>(slot)];
@@ -113,7 +110,7 @@ class MomentumSweeps<Spatial, S> {
   template <bool Gravity, class In, class Out>
   void turn_tops(const In& q, const In& p, Out u, Out pdot);
 
-  // Out of line: what the loop over a chain holds in registers must have no address.
+  // Out of line: what a chain's loop holds in registers must have no address.
   template <Turn turn, bool Gravity, class In>
   __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const In& p,
                                                      Articulated<S>& articulated);
@@ -156,8 +153,8 @@ class MomentumSweeps<Spatial, S> {
   bool tops_alone_ = false;
 };
 
-/// A revolute joint's outward step: Ω and g from the parent's frame to its own but for its own
-/// turning, which is left in `wz`; (45), and ṗ without the joint's force, (35).
+/// A revolute joint's outward step: Ω and g from the parent's frame to the joint's before its
+/// turning, left in `wz`; (45), and ṗ without the joint's force, (35).
 template <bool Gravity, class Link, class Edge, class S>
 MOMENTA_INLINE void move_revolute(const Link& l, const Edge& edge, const RevoluteRecord<S>& w,
                                   const S& c, const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz,
@@ -181,7 +178,7 @@ template <class S>
 template <bool Gravity, class In>
 bool MomentumSweeps<Spatial, S>::inward(const In& q, const In& p) {
   const Link* links = tree_->links.data();
-  Articulated<S> articulated;  // of the body after the next one: nothing at a leaf
+  Articulated<S> articulated;  // share of the next body; zero at a leaf
   for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
@@ -219,7 +216,7 @@ template <bool Gravity, class In, class Out>
 bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
   const Link* links = tree_->links.data();
   const std::size_t n = angles_.size();
-  // Velocity of O, angular velocity, gravity: of the body before, then of this one.
+  // v of O, ω, g: first of the body before, then of this one.
   const S zero(0.0);
   S vx = zero, vy = zero, vz = zero, ox = zero, oy = zero, oz = zero, gx = zero, gy = zero,
     gz = zero;

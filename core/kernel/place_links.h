@@ -1,6 +1,6 @@
 #pragma once
-// Where the joints of a tree are at (t, q): the first step of every recursion. Angles of revolute
-// joints and of all other joints on one axis are turned together, packs of them side by side.
+// Places of a tree's joints at (t, q): the first step of every recursion. Angles of all joints on
+// one axis are turned together, in packs.
 
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
@@ -9,8 +9,7 @@
 
 namespace momenta {
 
-/// Angle about z of the screw of a joint on one axis at its coordinate [rad], and shift along it
-/// [m].
+/// Angle of the screw about z of a joint on one axis [rad], and shift along it [m].
 template <class S>
 MOMENTA_INLINE S angle_at(const Model<Spatial>::Body& b, const S& value) {
   return b.kind == JointKind::revolute || b.kind == JointKind::helical ? value + b.theta0
@@ -22,7 +21,7 @@ MOMENTA_INLINE S shift_at(const Model<Spatial>::Body& b, const S& value) {
   return b.kind == JointKind::helical ? b.pitch * value + b.d0 : S(b.d0);
 }
 
-/// Axes of a spherical joint: the constant turn c and the joint's own as one quaternion c ∘ q.
+/// Axes of a spherical joint: the constant turn c and the joint's q as one quaternion c ∘ q.
 template <class S, class In>
 MOMENTA_INLINE Mat3<S> spherical_axes(const SphericalPlace& place, const In& q, int first) {
   const S w = q[first], x = q[first + 1], y = q[first + 2], z = q[first + 3];
@@ -33,10 +32,10 @@ MOMENTA_INLINE Mat3<S> spherical_axes(const SphericalPlace& place, const In& q, 
       c[0] * y + c[2] * w + c[3] * x - c[1] * z, c[0] * z + c[3] * w + c[1] * y - c[2] * x);
 }
 
-/// In place of their axes: spherical joints are placed where they are met.
+/// Instead of axes: spherical joints are placed where a sweep meets them.
 struct WhereMet {};
 
-/// Sines and cosines of the first n links that are revolute joints, turned axes of spherical joints
+/// Sines and cosines of revolute joints among the first n links, turned axes of spherical joints
 /// (`axes(record)`, unless WhereMet), edges of the others.
 template <class S, class In, class Axes>
 void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
@@ -92,7 +91,7 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
     }
   }
 }
-/// All of them.
+/// The same for all links.
 template <class S, class In, class Axes>
 void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
                  std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,

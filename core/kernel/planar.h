@@ -1,9 +1,9 @@
 #pragma once
 // The algebra of motion in a plane: 3-component velocities (v_x, v_y, ω) and momenta (p_x, p_y,
 // p_a), in ground axes of the plane, moments about each body's own joint origin. With absolute
-// angles no matrix has to be turned: the way from a child to its parent is a pure shift, and one
-// rotation of com and joint vectors per body replaces all congruences. Body frames are parallel to
-// the plane's axes when every joint is at zero.
+// angles no matrix is turned: the way to the parent is a shift, and one rotation of com and joint
+// vectors per body replaces all congruences. Body frames are parallel to the plane's axes when
+// every joint is at zero.
 
 #include <momenta/core/scene/joint_kind.h>
 
@@ -33,12 +33,12 @@ template <class S>
 S dot(const Vec2<S>& a, const Vec2<S>& b) {
   return a[0] * b[0] + a[1] * b[1];
 }
-/// The component of a × b out of the plane.
+/// Component of a × b normal to the plane.
 template <class S>
 S cross(const Vec2<S>& a, const Vec2<S>& b) {
   return a[0] * b[1] - a[1] * b[0];
 }
-/// ω × a for ω out of the plane.
+/// ω × a for ω normal to the plane.
 template <class S>
 Vec2<S> cross(const S& w, const Vec2<S>& a) {
   return {{-(w * a[1]), w * a[0]}};
@@ -107,11 +107,10 @@ struct Planar {
     double prismatic_x = 0, prismatic_y = 0;  ///< prismatic: direction in the parent's frame
   };
 
-  /// A body at one configuration: absolute angle, its joint seen from the parent's, and the slide
-  /// direction.
+  /// A body at one configuration: absolute angle, joint as seen from the parent's, slide direction.
   template <class S>
   struct Edge {
-    S angle{}, c{1.0}, s{};  ///< of the body
+    S angle{}, c{1.0}, s{};  ///< angle of the body
     Vec2<S> r;               ///< O_K − O_L, ground axes
     Vec2<S> prismatic;       ///< unit vector, ground axes
     S sign{1.0};             ///< E of a revolute joint is (0, 0, sign)
@@ -190,8 +189,8 @@ struct Planar {
   static Force<S> cross_force(const Motion<S>& m, const Force<S>& p) {
     return {cross(m.w, p.f), cross(m.v, p.f)};
   }
-  /// In ground axes A = (acceleration of O, dω/dt). Beside 𝒯ⱽ A_L and E u̇: centripetal −ω_L² r and
-  /// Coriolis 2 ω × E u.
+  /// In ground axes A = (acceleration of O, dω/dt). Beyond 𝒯ⱽ A_L and E u̇: −ω_L² r and Coriolis 2 ω
+  /// × E u.
   template <class S>
   static Motion<S> velocity_product(const Edge<S>& e, const Motion<S>* parent,
                                     const Motion<S>& body, const Motion<S>& joint) {

@@ -1,7 +1,7 @@
 #pragma once
-// The articulated-body recursion in a plane, (q, u, t) → u̇: the twin of planar_momentum_sweeps.h,
-// with the same elimination and axes. The velocity product of a revolute joint is −ω_L² r, the bias
-// of a body −ω² m c.
+// The articulated-body recursion in a plane, (q, u, t) → u̇: with the elimination and axes of
+// planar_momentum_sweeps.h. The velocity product of a revolute joint is −ω_L² r, the bias of a body
+// −ω² m c.
 
 #include <momenta/core/kernel/planar_places.h>
 
@@ -20,7 +20,7 @@ class AccelerationSweeps<Planar, S> : PlanarPlaces<S> {
   using Space = Planar;
   using Base::Base, Base::singular_joint;
 
-  /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. O(bodies).
+  /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but weights. O(bodies).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     Base::place(t, q);
@@ -32,8 +32,8 @@ class AccelerationSweeps<Planar, S> : PlanarPlaces<S> {
   }
 
  private:
-  /// What a revolute joint keeps: in `Dx`, `Dy` −ω² m c of its body, then c = −ω_L² r in `Axx`,
-  /// `Axy`.
+  /// Fills the records of revolute joints: `Dx`, `Dy` = −ω² m c of the body, then c = −ω_L² r in
+  /// `Axx`, `Axy`.
   template <class In>
   void velocities(const In& u);
   template <class InTau>

@@ -1,6 +1,6 @@
 #pragma once
-// Springs and wrenches at points of planar bodies from what a sweep has at hand: their bodies'
-// angles, ways and velocities. No sine is taken twice.
+// Springs and wrenches at points of planar bodies, from angles, ways and velocities that a sweep
+// has at hand: no sine is taken twice.
 
 #include <momenta/core/kernel/forces.h>
 #include <momenta/core/kernel/planar_link.h>
@@ -19,12 +19,12 @@ class PlanarBodyForces {
     }
   }
 
-  /// What a sweep knows of a body: its link's frame, O_K − O_L and Ω, in ground axes.
+  /// State of a body in a sweep: frame of its link, O_K − O_L and Ω, in ground axes.
   struct Known {
     S cosine, sine, rx, ry, vx, vy, omega;
   };
-  /// The wrenches T_K of (17), weights left out, from known(k) of every body that carries some and
-  /// of those below it. O(these bodies and their springs).
+  /// The wrenches T_K of (17), weights left out, from known(k) of every body under forces and of
+  /// those below it. O(these bodies and their springs).
   template <class Sweep>
   void gather(Sweep&& known) {
     for (std::size_t i = 0; i < turns_.size(); ++i) {
@@ -32,7 +32,7 @@ class PlanarBodyForces {
       const Known x = known(k);
       const double c = turns_[i][0], s = turns_[i][1];
       auto& body = w_.body[k];
-      // The model's frame, in which points are given, stands behind the link's by that turn.
+      // The model's frame, in which points are given, is turned back from the link's by turns_.
       body.pose.c = c * x.cosine + s * x.sine;
       body.pose.s = c * x.sine - s * x.cosine;
       body.pose.origin = origin(w_, w_.model->bodies[k].parent) + Vec2<S>{{x.rx, x.ry}};
@@ -41,12 +41,12 @@ class PlanarBodyForces {
     }
     add_body_forces(w_);
   }
-  /// T_K about O_K, ground axes; of a body that carries some.
+  /// T_K about O_K, ground axes; for bodies under forces.
   const Planar::Force<S>& on(std::size_t k) const { return w_.body[k].T; }
 
  private:
   Workspace<Planar, S> w_;
-  std::vector<Vec2<double>> turns_;  ///< cosine and sine, as w_.forced
+  std::vector<Vec2<double>> turns_;  ///< cosine and sine, in the order of w_.forced
 };
 
 }  // namespace momenta

@@ -1,7 +1,7 @@
 #pragma once
 // The recursion of the paper in a plane, (q, p, t) → (u, ṗ), eqs. (35), (37)-(48), for trees of any
 // planar joints. Three-component algebra in ground axes about each body's own joint: no matrix is
-// ever turned. For a revolute joint K, r the way from its parent's joint:
+// turned. For a revolute joint K, r the way from its parent's joint:
 //
 //   inward    M_j⁻¹ = 1/I, h = H/I, A' = A − H hᵀ, D' = D + h e, D'_n = p          (46)-(48)
 //             to the parent: A', H = A' ρ, I = r × H, D_n = p + r × D', ρ = (−r_y, r_x)   (43),
@@ -9,7 +9,7 @@
 //   outward   v += ω_L ρ, ω = M_j⁻¹ e − h·v, u = ω − ω_L                             (45)
 //             P* = A' v + D', ṗ = weight's moment − v × P*                            (42), (35)
 //
-// The moment of the subtree's weight about O rides inward as one number.
+// The moment of the subtree's weight about O goes inward as one number.
 
 #include <momenta/core/kernel/planar_places.h>
 
@@ -29,8 +29,8 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
   explicit MomentumSweeps(const PlanarTree& tree) : Base(tree), solution_(tree) {}
   using Base::singular_joint;
 
-  /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. False when a
-  /// joint's articulated inertia is not positive: singular_joint(). O(bodies).
+  /// u (nv) and the open chain's ṗ (nv), without forces between points of bodies. False at a
+  /// singular joint: singular_joint(). O(bodies).
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
     Base::place(t, q);
@@ -38,11 +38,10 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
     return inward(p) && outward(q, u, pdot);
   }
 
-  /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out:
-  /// inverse_mass.h. O(bodies).
+  /// M⁻¹ x (nv) at the last configuration, without prescribed motion: inverse_mass.h. O(bodies).
   template <class In, class Out>
   void inverse_mass_times(const In& x, Out result);
-  /// The same on S or, from sweeps on directions, on packs of right-hand sides.
+  /// The same for S or, after sweeps on directions, for packs of right-hand sides.
   /// @pre S, or revolute joints alone.
   template <class X, class In, class Out>
   void inverse_mass_times(MassSolution<Planar, X>& solution, const In& x, Out result);
@@ -138,14 +137,14 @@ bool MomentumSweeps<Planar, S>::general_inward(std::size_t k, const In& p,
   Planar::ArticulatedInertia<S> M;
   if (!eliminate<Planar>(b, x, M)) return false;
   auto D = remainder<Planar>(b, x, &r);
-  if (b.drive >= 0) {  // M' = M*: its momentum under the prescribed rates Ω_t, (44)
+  if (b.drive >= 0) {  // M' = M*: momentum of the prescribed rates Ω_t, (44)
     Planar::Motion<S> prescribed{};
     Joint<Planar>::add_motion(b, x.edge, &x.drive_rate, prescribed);
     D += Planar::momentum(x.M, prescribed);
   }
   if (b.parent < 0) return true;
   Base::carry(a, x, M, D);
-  // The subtree's weight acts at the parent wherever this joint has moved to.
+  // The subtree's weight acts at the parent wherever this joint moves.
   const auto& g = tree_->model->gravity;
   a.G += b.subtree_mass * (x.edge.r[0] * g[1] - x.edge.r[1] * g[0]);
   if (!l.first) Base::leave(l, Base::slot_of_parent(l), a);

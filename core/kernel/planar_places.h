@@ -1,5 +1,5 @@
 #pragma once
-// What both recursions in a plane share: records, and where the bodies are at (t, q).
+// Records and places of bodies at (t, q), shared by both recursions in a plane.
 
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/planar_link.h>
@@ -7,7 +7,7 @@
 
 namespace momenta {
 
-/// What bodies pass inward, and outward.
+/// Quantities that bodies pass inward, and outward.
 template <class S>
 struct PlanarArticulated {
   S Axx, Axy, Ayy, Hx, Hy, I, Dx, Dy, Dn, G;
@@ -44,7 +44,7 @@ class PlanarPlaces {
   void place(const S& t, const In& q) {
     const PlanarLink* links = tree_->links.data();
     const std::size_t n = angles_.size();
-    S before(0.0);  // of the body before: along a chain one addition waits for the other
+    S before(0.0);  // angle of the body before: chains sum consecutively
     for (std::size_t k = 0; k < n; ++k) {
       const PlanarLink& l = links[k];
       S angle(tree_->theta0[k]);
@@ -87,7 +87,7 @@ class PlanarPlaces {
     return {
         {angles_.cosine(k) * x - angles_.sine(k) * y, angles_.sine(k) * x + angles_.cosine(k) * y}};
   }
-  /// O_K − O_L while the joint rests at zero.
+  /// O_K − O_L with the joint at zero.
   MOMENTA_INLINE Vec2<S> step(const PlanarLink& l) const {
     if (!l.first) return turned(l.parent, l.x, l.y);
     const auto k = static_cast<std::size_t>(l.parent);
@@ -97,7 +97,7 @@ class PlanarPlaces {
   PlanarArticulated<S>& slot_of_parent(const PlanarLink& l) {
     return slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)];
   }
-  /// Ω of the parent's joint, when that is not the body before.
+  /// Ω of the parent's joint, where the parent is not the body before.
   const PlanarMotion<S>& motion_of_parent(const PlanarLink& l) const {
     return outward_slots_[static_cast<std::size_t>(
         tree_->links[static_cast<std::size_t>(l.parent)].slot)];
@@ -115,7 +115,7 @@ class PlanarPlaces {
     a.Dn = a.Dn + b.Dn;
     a.G = a.G + b.G;
   }
-  /// What a child beside the first leaves in its parent's slot.
+  /// Leaves the share of a child beside the first in its parent's slot.
   static MOMENTA_INLINE void leave(const PlanarLink& l, PlanarArticulated<S>& slot,
                                    const PlanarArticulated<S>& a) {
     if (l.opens)
@@ -131,7 +131,7 @@ class PlanarPlaces {
     a.Hy = a.Hy + kx;
     a.I = a.I + l.J;
   }
-  /// A', D' of a joint at O_K to O_L; D'_n = n.
+  /// Takes A', D' of a joint from O_K to O_L; D'_n = n.
   static MOMENTA_INLINE void carry(PlanarArticulated<S>& a, const S& rx, const S& ry, const S& n) {
     a.Hx = a.Axy * rx - a.Axx * ry;
     a.Hy = a.Ayy * rx - a.Axy * ry;

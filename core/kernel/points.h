@@ -25,7 +25,7 @@ auto to_ground(const Workspace<Space, S>& w, int k, const C& v) {
   return r;
 }
 
-/// A vector in ground axes in the axes of the sweeps (body axes in space, ground axes in the
+/// A vector in ground axes to the axes of the sweeps (body axes in space, ground axes in the
 /// plane).
 template <class Space, class S>
 auto from_ground(const Workspace<Space, S>& w, int k, const typename Space::template Vector<S>& v) {
@@ -55,7 +55,7 @@ auto angular_velocity(const Workspace<Space, S>& w, int k) {
     return k < 0 ? Vec3<S>{} : to_ground(w, k, w.body[static_cast<std::size_t>(k)].V.w);
 }
 
-/// Velocity in ground axes of the point of body k that is at the ground position x now.
+/// Velocity in ground axes of the point of body k at the ground position x.
 template <class Space, class S>
 auto point_velocity(const Workspace<Space, S>& w, int k,
                     const typename Space::template Vector<S>& x) {
@@ -70,8 +70,7 @@ auto point_velocity(const Workspace<Space, S>& w, int k,
 }
 
 /// Acceleration of that point in ground axes, from body[k].A. In space A is the derivative in body
-/// axes, so the origin moves with d/dt v + ω × v; in the plane A.v is that acceleration already.
-/// Then α × r + ω × (ω × r).
+/// axes, so O has d/dt v + ω × v; in the plane A.v is that already. Then α × r + ω × (ω × r).
 template <class Space, class S>
 auto point_acceleration(const Workspace<Space, S>& w, int k,
                         const typename Space::template Vector<S>& x) {
@@ -97,8 +96,7 @@ auto angular_acceleration(const Workspace<Space, S>& w, int k) {
     return k < 0 ? Vec3<S>{} : to_ground(w, k, w.body[static_cast<std::size_t>(k)].A.w);
 }
 
-/// Adds the wrench of a ground-axes force f at ground position x to F, a force on body k about its
-/// origin.
+/// Adds the wrench of a ground-axes force f at ground position x to F, on body k about its origin.
 template <class Space, class S>
 void add_force(const Workspace<Space, S>& w, int k, const typename Space::template Vector<S>& x,
                const typename Space::template Vector<S>& f, typename Space::template Force<S>& F) {

@@ -1,13 +1,13 @@
 #pragma once
-// The frame of a body as its scene has it, in ground axes: the pose of the kernel's body and what
-// turns the kernel's axes into the scene's.
+// Frame of a scene's body in ground axes: the pose of the kernel's body, and the turn from the
+// kernel's axes to the scene's.
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/tree/tree.h>
 
 namespace momenta {
 
-/// After poses_outward() with poses of all bodies.
+/// @pre poses_outward() with poses of all bodies
 inline Eigen::Isometry3d pose_of(const Tree::Body& body, const Model<Spatial>& model,
                                  const Workspace<Spatial, double>& w, std::size_t k) {
   Eigen::Isometry3d pose;

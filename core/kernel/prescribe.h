@@ -1,7 +1,6 @@
 #pragma once
-// f(t), ḟ, f̈ of a driven joint for every number type. Motion laws are evaluated out of line, by
-// code compiled once for any machine, for the numbers of a level: packs lane by lane, directions
-// from one state as eight derivatives of one evaluation.
+// f(t), ḟ, f̈ of a driven joint for every number type. Motion laws run out of line, in code compiled
+// once for any machine: packs lane by lane, directions as eight derivatives of one evaluation.
 
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scene/drive.h>
@@ -14,8 +13,8 @@ void prescribe(const MotionLaw& law, const S& t, S& f, S& fdot, S& fddot) {
   law.evaluate(t, f, fdot, fddot);
 }
 
-/// The same in doubles, and on Dual8 in plain arrays: t and f, ḟ, f̈ one after the other, each its
-/// value and eight derivatives.
+/// The same in doubles, and on Dual8 in plain arrays: t; f, ḟ, f̈; value and eight derivatives of
+/// each.
 void prescribed_motion(const MotionLaw& law, double t, double& f, double& fdot, double& fddot);
 void prescribed_motion(const MotionLaw& law, const double* t, double* f);
 

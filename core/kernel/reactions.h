@@ -1,15 +1,15 @@
 #pragma once
-// Joint reactions from one dual-number pass, eq. (28), the step the paper announces next:
+// Joint reactions from one dual-number pass, eq. (28), which the paper announces as its next step:
 //
 //   T_r,K = d/dt P*_K + Ω_K × P*_K − T*_K
 //
-// P*_K is known as a function of (q, p, t), so its rate is its derivative along (q̇, ṗ, 1): the
-// momentum recursion on numbers a + b ε gives u and u̇ at once, P* = Σ M Ω gives P* and its rate.
-// The accelerations of drives come in through t. No acceleration-level equation is written
-// anywhere; the Newton-Euler recursion of accelerations.h is the check.
+// P*_K is a function of (q, p, t), its rate the derivative along (q̇, ṗ, 1): the momentum recursion
+// on numbers a + b ε gives u and u̇ at once, P* = Σ M Ω gives P* and its rate. Accelerations of
+// drives come in through t. No acceleration-level equation is needed; Newton-Euler in
+// accelerations.h is the check.
 //
-// T_r,K acts at O_K from the parent on body K and holds what acts along the joint too: Eᵀ T_r is
-// its spring, damper and torque, or the force of its drive.
+// T_r,K acts at O_K from the parent on body K, along the joint too: Eᵀ T_r is its spring, damper
+// and torque, or the force of its drive.
 
 #include <momenta/core/kernel/momentum_recursion.h>
 
@@ -31,7 +31,7 @@ class ReactionPass {
         u_(p_.size()),
         pdot_(p_.size()) {}
 
-  /// From q, q̇ (nq), p, ṗ (nv) of one state of the motion. False as momentum_recursion. O(bodies),
+  /// Takes q, q̇ (nq), p, ṗ (nv) of one state of the motion. False as momentum_recursion. O(bodies),
   /// about ten plain evaluations.
   bool operator()(double t, const double* q, const double* qdot, const double* p,
                   const double* pdot) {

@@ -1,17 +1,19 @@
 #pragma once
-// M*_K of a body on a revolute joint to its parent: (47) and 𝒯ᶠ M' 𝒯ⱽ of (43), entry by entry.
+// M*_K of a body on a revolute joint, taken to its parent: (47) and 𝒯ᶠ M' 𝒯ⱽ of (43), entry by
+// entry.
 //
 // M' = M* − U hᵀ has no row and no column for ω_z: 15 numbers instead of 21. The joint's screw
 // about z turns and shifts them among themselves. The turn about x that follows fills the third
 // column from two others and must come before the shift along x, which needs the full matrix. A
-// right angle about x only swaps and signs, and leaves ω_y without row and column for the shift.
+// right angle about x only swaps and changes signs, leaving ω_y without row and column for the
+// shift.
 
 #include <momenta/core/kernel/full_inertia.h>
 
 namespace momenta {
 
-/// M' in the frame of the revolute joint: A = (Axx … Azz), H without its last column, I without its
-/// last row.
+/// M' in the revolute joint's frame: A = (Axx … Azz), H without its last column, I without its last
+/// row.
 template <class S>
 struct Reduced {
   S Axx, Axy, Axz, Ayy, Ayz, Azz, Hxx, Hxy, Hyx, Hyy, Hzx, Hzy, Ixx, Ixy, Iyy;
@@ -50,10 +52,9 @@ MOMENTA_INLINE void eliminate_revolute(const Full<S>& m, const S& inverse, Revol
   r.Iyy = m.Iyy - Uny * h.ny;
 }
 
-/// What of M' enters Eᵀ(Ω × P*) of a revolute joint, P* = M' W + D'. About the axis W does for Ω,
+/// Entries of M' in Eᵀ(Ω × P*) of a revolute joint, P* = M' W + D'. About the axis W serves for Ω,
 /// as E u adds nothing there, and the quadratic form Eᵀ(W × M' W), collected, has ten numbers
-/// instead of the eighteen of four rows of M'; the four sums and differences are what the revolute
-/// joint's turn takes of M' anyway.
+/// instead of eighteen in four rows of M'; the joint's turn needs the sums and differences anyway.
 template <class S>
 struct RevoluteTurning {
   S A, Axy, Axz, Ayz;  ///< Axx − Ayy, …
@@ -150,7 +151,7 @@ MOMENTA_INLINE void turn_x(const Reduced<S>& r, const Link& l, Full<S>& m) {
   m.Izz = r.Iyy - m.Iyy;
 }
 
-/// Shift along x by a, the matrix full.
+/// Shift of the full matrix along x by a.
 template <class S, class C>
 MOMENTA_INLINE void shift_x(Full<S>& m, const C& a) {
   const S hzy = m.Hzy, hyz = m.Hyz, hyy = m.Hyy;

@@ -26,7 +26,7 @@ void RelativeWays::up(int from, int ancestor) {
 
 void RelativeWays::between(int a, int b) {
   int x = a, y = b;
-  // In depth-first order the later body is no ancestor of the earlier one: climb from it.
+  // Depth-first: the later body is no ancestor of the earlier one; climb from it.
   while (x != y) {
     int& later = x > y ? x : y;
     later = parents_[at(later)];

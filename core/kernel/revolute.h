@@ -1,13 +1,13 @@
 #pragma once
-// How revolute joints pass mass matrices and remainders to their parents, and motions to their
-// children: shared by the momentum and the acceleration recursion.
+// Revolute joints pass mass matrices and remainders to parents, and motions to children: shared by
+// the momentum and the acceleration recursion.
 
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
 
 namespace momenta {
 
-/// What bodies pass on inward: M*, D, G; outward: Ω, g.
+/// Quantities passed inward: M*, D, G; outward: Ω, g.
 template <class S>
 struct Articulated {
   Full<S> M;
@@ -39,16 +39,15 @@ MOMENTA_INLINE void add_motion(OutwardMotion<S>& a, const Spatial::Motion<S>& V)
   a.oz = a.oz + V.w[2];
 }
 
-/// What is left of a body once its revolute joint is eliminated: M', and D' and G in its frame.
+/// A body once its revolute joint is eliminated: M', and D' and G in its frame.
 template <class S>
 struct Eliminated {
   Reduced<S> M;
   S fx, fy, fz, nx, ny, nz, Gx, Gy, Gz;
 };
 
-/// f(number of a, the same number of b) for all numbers of two articulated quantities, one by one:
-/// copies of whole records would be read back in other pieces than they were written in, and wait
-/// for memory.
+/// Calls f(number of a, number of b) for all numbers of two articulated quantities, one by one:
+/// copies of whole records would be read in other pieces than written, and wait for memory.
 template <bool Gravity = true, class A, class B, class F>
 MOMENTA_INLINE void in_pairs(Articulated<A>& a, const Articulated<B>& b, F&& f) {
   Full<A>& m = a.M;
@@ -69,7 +68,7 @@ MOMENTA_INLINE void add(Articulated<S>& a, const Articulated<S>& b) {
   in_pairs<Gravity>(a, b, [](S& x, const S& y) { x = x + y; });
 }
 
-/// + the body itself and the constant part of its first moment.
+/// Adds the body itself and the constant part of its first moment.
 template <bool Gravity, class Link, class S>
 MOMENTA_INLINE void add_body(Articulated<S>& articulated, const Link& l) {
   add_body(articulated.M, l);
@@ -80,7 +79,7 @@ MOMENTA_INLINE void add_body(Articulated<S>& articulated, const Link& l) {
   }
 }
 
-/// What a child beside the first leaves in its parent's slot.
+/// Leaves the share of a child beside the first in its parent's slot.
 template <bool Gravity, class Link, class S>
 MOMENTA_INLINE void leave(const Link& l, Articulated<S>& slot, const Articulated<S>& articulated) {
   if (l.opens)
@@ -97,7 +96,7 @@ MOMENTA_INLINE void set_leaf(const Leaf& leaf, RevoluteColumn<S>& h, Reduced<S>&
   h = {S(leaf.h[0]), S(leaf.h[1]), S(leaf.h[2]), S(leaf.h[3]), S(leaf.h[4])};
 }
 
-/// A screw about z; of G the turn.
+/// A screw about z; G is turned.
 template <bool Gravity, class S, class C>
 MOMENTA_INLINE void screw_inward(const C& c, const C& s, const C& d, Articulated<S>& articulated) {
   turn_and_shift_z(articulated.M, c, s, d);
@@ -155,7 +154,7 @@ MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Articulated<S>&
   }
 }
 
-/// To the parent where a chain ends.
+/// carry() where a chain ends.
 template <Turn turn, bool Gravity, class Link, class S>
 __attribute__((noinline)) void carry_last(const Eliminated<S>& r, const Link& l,
                                           Articulated<S>& articulated) {
@@ -227,14 +226,14 @@ MOMENTA_INLINE void carry_any(const Link& l, const Edge& e, const Eliminated<S>&
   if (l.screwed) screw_inward<Gravity>(e.cos_gamma, e.sin_gamma, e.delta, articulated);
 }
 
-/// Two components across z in axes turned by the angle of (c, s).
+/// Components across z in axes turned by the angle of (c, s).
 template <class C, class S>
 MOMENTA_INLINE void turn_outward(const C& c, const C& s, S& x, S& y) {
   const S turned = c * x + s * y;
   y = c * y - s * x;
   x = turned;
 }
-/// A screw about z outward, 𝒯ⱽ of (23): of a motion the rows across z; those along it stay.
+/// A screw about z outward, 𝒯ⱽ of (23): rows of a motion across z; those along it stay.
 template <class C, class D, class S>
 MOMENTA_INLINE void screw_outward(const C& c, const C& s, const D& d, S& vx, S& vy, S& ox, S& oy) {
   vx = vx + d * oy;

@@ -1,21 +1,21 @@
 #pragma once
-// The inertia I_r of a rotor on a joint's rate: ½ I_r u² of kinetic energy beside that of the
-// bodies, as of a motor's armature seen through its gear. It adds one number to the pivot and to p,
+// Inertia I_r of a rotor on a joint's rate: ½ I_r u² of kinetic energy beside that of the bodies,
+// as of a motor's armature seen through its gear. It adds one number to the pivot and to p,
 //
 //   p = Eᵀ P* + I_r u,  M_j = Eᵀ M* E + I_r                                   (34), (46)
 //
-// and M' = M* − M*E M_j⁻¹ EᵀM* keeps what vanishes without it. About a revolute joint's ẑ, with
-// h = M*E M_j⁻¹, γ = I_r M_j⁻¹, h_z = 1 − γ, and R what M' is without its row and column of ω_z:
+// and M' = M* − M*E M_j⁻¹ EᵀM* keeps what vanishes without it. About a revolute joint's ẑ, with h =
+// M*E M_j⁻¹, γ = I_r M_j⁻¹, h_z = 1 − γ, and R for M' without row and column of ω_z:
 //
 //   M' = R + k ẑᵀ + ẑ kᵀ,  k = I_r (h − ½ h_z ẑ)                              (47)
 //   D'_z = p − I_r M_j⁻¹ e                                                    (48)
 //   Ω_z = M_j⁻¹ e − (h − h_z ẑ)ᵀ W + γ W_z                                    (45)
 //   P* = R W + D' + I_r W_z h across ẑ                                        (42)
 //
-// The pair (k, ẑ) goes to the parent as two wrenches do. ẑ is a couple: only H and I take from it.
+// The pair (k, ẑ) goes to the parent as two wrenches do. ẑ is a couple: it enters only H and I.
 //
-// A spherical joint's rotor has I_r about every axis, ½ I_r u·u with u in child axes. As I_r u and
-// u are parallel, (35) needs no further term, u × I_r u = 0. Its elimination: general_joint.h.
+// A spherical joint's rotor has I_r about every axis, ½ I_r u·u with u in child axes. As u × I_r u
+// = 0, (35) needs no further term. Its elimination: general_joint.h.
 
 #include <momenta/core/kernel/revolute.h>
 
@@ -32,7 +32,7 @@ MOMENTA_INLINE Spatial::Force<S> turned_rotor(const Link& l, const RevoluteColum
   return k;
 }
 
-/// What W_z of the body before the joint's own turning adds to −Eᵀ(Ω × P*) of (35).
+/// Share of W_z, before the joint's own turning, in −Eᵀ(Ω × P*) of (35).
 template <class Inertia, class S>
 MOMENTA_INLINE S rotor_rate(const RevoluteColumn<S>& h, const Inertia& rotor, const S& vx,
                             const S& vy, const S& ox, const S& oy, const S& oz) {
@@ -72,8 +72,8 @@ __attribute__((noinline)) void carry_rotor(const Edge& e, Spatial::Force<S> k,
   add_rotor_pair(k, z, parent.M);
 }
 
-/// The same of a link, in place, where M_L is in memory anyway, with k in registers: written to
-/// memory number by number and copied from there in one, it would wait.
+/// The same for a link, in place where M_L is in memory, with k in registers: written number by
+/// number and read back as one copy, k would wait.
 template <class Link, class Edge, class S>
 MOMENTA_INLINE void carry_rotor_of(const Link& l, const Edge& e, Spatial::Force<S> k,
                                    Articulated<S>& parent) {
@@ -97,8 +97,8 @@ MOMENTA_INLINE void carry_rotor_of(const Link& l, const Edge& e, Spatial::Force<
   add_rotor_pair(k, z, m);
 }
 
-/// The same out of line and on a copy: the sweeps that call it keep their registers for joints
-/// without rotors.
+/// The same out of line and on a copy, so that callers keep their registers for joints without
+/// rotors.
 template <class Edge, class S>
 MOMENTA_INLINE void hand_on_rotor(const Edge& e, const Spatial::Force<S>& k,
                                   Articulated<S>& parent) {

@@ -7,15 +7,15 @@
 //   l = |D|      the forces f D/l on the child, −f D/l on the parent
 //   eᵀv, eᵀω     the force f e at a point, the couple f e           components of wrenches
 //
-// The last have rates alone. What acts along s acts along ṡ, since ∂ṡ/∂u = ∂s/∂q.
+// The last have rates alone. A force along s acts along ṡ, since ∂ṡ/∂u = ∂s/∂q.
 
 #include <momenta/core/kernel/coordinate_spring.h>
 #include <momenta/core/scalar/dual.h>
 
 namespace momenta {
 
-/// The line between two points: D = x_child − x_parent and its length (across the plane too, where
-/// offset).
+/// The line between two points: D = x_child − x_parent and its length, with an offset across the
+/// plane.
 template <class Space, class S>
 struct SpringLine {
   typename Space::template Vector<S> parent, child, D;
@@ -27,7 +27,7 @@ struct SpringLine {
     using std::sqrt;
     length = sqrt(dot(D, D) + spring.offset2);
   }
-  /// Of points at the same place there is none.
+  /// Whether the points are apart.
   bool has_direction() const { return value_of(length) != 0; }
   /// dl/dt. Needs velocities. @pre has_direction()
   S rate(const Workspace<Space, S>& w, const typename Model<Space>::Spring& spring) const {
@@ -35,7 +35,7 @@ struct SpringLine {
                point_velocity(w, spring.child, child) - point_velocity(w, spring.parent, parent)) /
            length;
   }
-  /// Adds forces on both bodies that pull them together.
+  /// Adds opposite forces on both bodies that pull them together.
   void pull(Workspace<Space, S>& w, const typename Model<Space>::Spring& spring,
             const S& by_length) const {
     const auto f = by_length * D;
@@ -106,7 +106,7 @@ S signal_rate(const Workspace<Space, S>& w, const typename Model<Space>::Signal&
   return S{};
 }
 
-/// What a formula takes of the signal: s, or ṡ where it is a rate.
+/// Value of the signal in a formula: s, or ṡ where it is a rate.
 template <class Space, class S>
 S signal_value(const Workspace<Space, S>& w, const typename Model<Space>::Signal& s) {
   return s.is_rate ? signal_rate(w, s) : signal_place(w, s);

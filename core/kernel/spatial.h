@@ -5,8 +5,7 @@
 // is a chain of screws about coordinate axes (turn and shift along the same axis, which commute):
 //   about z by (γ, δ), about x by (α, a), about y by β (only where two axes are nearly parallel),
 //   then the joint: about z by (θ, d), with q in θ for a revolute and in d for a prismatic joint.
-// Each screw touches two of three components, so transfers and congruences cost about half of
-// general ones.
+// Each screw touches two of three components: transfers and congruences cost about half.
 
 #include <momenta/core/kernel/spatial_algebra.h>
 #include <momenta/core/scene/joint_kind.h>
@@ -27,8 +26,8 @@ struct Spatial : SpatialAlgebra {
     bool about_z = false, about_x = false, about_y = false;
   };
 
-  /// The same way at one configuration: constants, then the joint's own screw or, for spherical and
-  /// free joints, rotation and position.
+  /// That way at one configuration: constants, then the joint's screw or, for spherical, free and
+  /// user joints, rotation and position.
   template <class S>
   struct Edge {
     S cos_theta{1.0}, sin_theta{}, d{};
@@ -100,8 +99,8 @@ struct Spatial : SpatialAlgebra {
   // --- the whole edge
   // ------------------------------------------------------------------------------------------
 
-  /// The constant screws outward, of a motion and of a direction. Constants: EdgeConstants, or of
-  /// several edges side by side (BranchLink).
+  /// The constant screws outward, of a motion and of a direction. Constants: EdgeConstants, or
+  /// several side by side (BranchLink).
   template <class Constants, class S>
   static void constants_outward(const Constants& k, Motion<S>& m) {
     if (k.about_z) motion_outward<2>(m, k.cos_gamma, k.sin_gamma, k.delta);
@@ -168,8 +167,7 @@ struct Spatial : SpatialAlgebra {
     return m;
   }
 
-  /// A direction or point fixed in the parent's frame in child axes (no shift): gravity on its way
-  /// outward.
+  /// A direction fixed in the parent's frame in child axes (no shift): for gravity, outward.
   template <class Constants, class S>
   static Vec3<S> direction_to_child(const Constants& k, JointKind kind, const Edge<S>& e,
                                     Vec3<S> g) {
@@ -211,13 +209,13 @@ struct Spatial : SpatialAlgebra {
     return p;
   }
 
-  /// What dΩ_K/dt (body axes) has beside 𝒯ⱽ dΩ_L/dt and E u̇: Ω_K × (E u), `joint` = E u + Ω_t.
+  /// dΩ_K/dt (body axes) less 𝒯ⱽ dΩ_L/dt and E u̇: Ω_K × (E u), `joint` = E u + Ω_t.
   template <class S>
   static Motion<S> velocity_product(const Edge<S>&, const Motion<S>* /*parent*/,
                                     const Motion<S>& body, const Motion<S>& joint) {
     return cross_motion(body, joint);
   }
-  /// True for joints whose own transform is a rotation (and position) instead of a screw about z.
+  /// Whether a joint's own transform is a rotation (and position) instead of a screw about z.
   static constexpr bool moves_freely(JointKind kind) {
     return kind == JointKind::spherical || kind == JointKind::free || kind == JointKind::user;
   }

@@ -67,8 +67,7 @@ struct Joint<Spatial> {
     }
   }
 
-  /// The pose, E and Ω_t of a user joint at (t, q) into `own`, which the edge points to from now
-  /// on.
+  /// Pose, E and Ω_t of a user joint at (t, q) into `own`, which the edge points to.
   template <class S>
   static void place(const Body& b, const S& t, const S* q, UserMotion<S>& own,
                     Spatial::Edge<S>& e) {
@@ -87,7 +86,7 @@ struct Joint<Spatial> {
       e.rotation.set_column(j, column);
     }
   }
-  /// Ė and dΩ_t/dt along (u, 1) of a user joint that is in its place.
+  /// Ė and dΩ_t/dt along (u, 1) of a user joint. @pre place()
   template <class S>
   static void move(const Body& b, const Spatial::Edge<S>& e, const S* u) {
     user_motion(*b.law, u, *e.own);
@@ -183,10 +182,9 @@ struct Joint<Spatial> {
     return U;
   }
 
-  /// Positive where a one-dof joint has inertia to move. M_j itself for a revolute joint, whose M'
-  /// is free of dust; less what rounding may leave of all the mass carried where a prismatic joint
-  /// or a screw is eliminated: behind two slides there is no mass along a third in their plane, but
-  /// for rounding.
+  /// Positive where a one-dof joint has inertia. For a revolute joint M_j itself, as its M' has no
+  /// rounding left; for a prismatic joint or a screw M_j less the rounding of all the mass carried:
+  /// behind two slides no mass is left along a third in their plane but rounding.
   template <class S>
   static S inertia_margin(const Body& b, const Spatial::ArticulatedInertia<S>& m,
                           const S& joint_mass) {
@@ -198,9 +196,8 @@ struct Joint<Spatial> {
     return joint_mass - (b.pitch * b.pitch * least + rounding * turning);
   }
 
-  /// M* − U hᵀ with h = U / M_j, eq. (47). Without a rotor the joint's own row and column vanish
-  /// exactly: dust left there would pass for the inertia of a joint that has none. See reduce_screw
-  /// for helical ones.
+  /// M* − U hᵀ with h = U / M_j, eq. (47). Without a rotor the joint's row and column vanish
+  /// exactly: rounding there would pass for inertia. Helical joints: reduce_screw.
   template <class S>
   static void reduce(const Body& b, Spatial::ArticulatedInertia<S>& m, const Spatial::Force<S>& u,
                      const Spatial::Force<S>& h) {
@@ -221,9 +218,9 @@ struct Joint<Spatial> {
   }
 
  private:
-  /// M' E = 0 ties two rows and columns of M' together: pitch M'(·, v_z) + M'(·, ω_z) = 0. One of
-  /// them is made from the other, so that this holds as written and M' stays symmetric; the one
-  /// that is then multiplied by a number below one.
+  /// M' E = 0 ties two rows and columns of M' together: pitch M'(·, v_z) + M'(·, ω_z) = 0. One is
+  /// computed from the other, by a factor of at most one, so that this holds exactly and M' stays
+  /// symmetric.
   template <class S>
   static void reduce_screw(double pitch, Spatial::ArticulatedInertia<S>& m) {
     if (std::abs(pitch) <= 1) {

@@ -1,7 +1,7 @@
 #pragma once
-// How a spherical joint is eliminated and passes on what is left, in both recursions. What carries
-// nothing is eliminated once, as M* is constant there; a joint on the ground passes nothing on, and
-// its origin rests: there ω = I⁻¹ e is all, with neither Z nor A'.
+// Elimination of spherical joints, for both recursions. One that carries nothing has constant M*
+// and is eliminated once; one on the ground passes nothing on, its origin rests, and ω = I⁻¹ e is
+// all.
 
 #include <momenta/core/kernel/revolute.h>
 
@@ -9,18 +9,18 @@
 
 namespace momenta {
 
-/// (46)-(48) of a spherical joint by I = L Δ Lᵀ, which leaves A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ, the
-/// whole of M', and D'_f = D_f + Z Δ⁻¹ L⁻¹ e. No inverse is formed: shorter, and backward stable.
-/// Pivots by minors, d₁ = m₁/I_xx and d₂ = m₂/(I_xx m₁) with m₁ = I_xx I_yy − I_xy² and
-/// m₂ = m₁ (I_xx I_zz − I_xz²) − (I_xx I_yz − I_xy I_xz)²: elimination of scaled rows, as exact,
-/// and no division waits for another.
+/// (46)-(48) of a spherical joint by I = L Δ Lᵀ: A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ is the whole of
+/// M', and D'_f = D_f + Z Δ⁻¹ L⁻¹ e. No inverse: shorter, and backward stable. Pivots by minors, d₁
+/// = m₁/I_xx and d₂ = m₂/(I_xx m₁) with m₁ = I_xx I_yy − I_xy² and m₂ = m₁ (I_xx I_zz − I_xz²) −
+/// (I_xx I_yz − I_xy I_xz)²: elimination of scaled rows, as exact, and no division waits for
+/// another.
 template <class S>
 struct SphericalPivot {
   S l10, l20, l21, i0, i1, i2;  ///< L, Δ⁻¹
   Mat3<S> s;                    ///< Z Δ⁻¹
   Vec3<S> e;                    ///< L⁻¹ e
 
-  /// L and Δ⁻¹ alone: all that a joint on the ground needs. False when I is not positive.
+  /// L and Δ⁻¹ alone, enough for a joint on the ground. False when I is not positive.
   MOMENTA_INLINE bool factor(const Full<S>& m) {
     const S minor = m.Ixx * m.Iyy - m.Ixy * m.Ixy, below = m.Ixx * m.Iyz - m.Ixy * m.Ixz;
     const S last = minor * (m.Ixx * m.Izz - m.Ixz * m.Ixz) - below * below;
@@ -61,7 +61,7 @@ struct SphericalPivot {
     take(right);
     return s * e;
   }
-  /// ω = I⁻¹ e of a body whose origin rests.
+  /// ω = I⁻¹ e with the origin at rest.
   MOMENTA_INLINE Vec3<S> omega() const {
     const S z = e[2] * i2;
     const S y = e[1] * i1 - l21 * z;
@@ -76,8 +76,8 @@ struct SphericalPivot {
   }
 };
 
-/// Eliminates the spherical joints that carry nothing, in their records' `pivot` and `A`, and marks
-/// them `constant`. One without inertia is left to its sweep, which tells of it.
+/// Eliminates spherical joints that carry nothing, into `pivot` and `A` of their records, and marks
+/// them `constant`. One without inertia is left to its sweep, which reports it.
 template <class S, class Record>
 void eliminate_leaves(const LinkTree& tree, std::vector<Record>& records) {
   for (const Link& l : tree.links) {
@@ -89,8 +89,8 @@ void eliminate_leaves(const LinkTree& tree, std::vector<Record>& records) {
   }
 }
 
-/// M' = (A, 0; 0, 0) and D' = (f, n) of a spherical joint in the parent's frame: A turned by R, and
-/// what the step r makes of it, H = −A r̃, I = r̃ H.
+/// M' = (A, 0; 0, 0) and D' = (f, n) of a spherical joint in the parent's frame: A turned by R and
+/// shifted by the step r, H = −A r̃, I = r̃ H.
 template <class S>
 MOMENTA_INLINE void carry_spherical(const Vec3<double>& r, const Mat3<S>& R, const Sym3<S>& A,
                                     const Vec3<S>& force, const Vec3<S>& moment,

@@ -1,6 +1,6 @@
 #pragma once
-// The sweeps shared by every algorithm: poses, velocities and momenta. "Outward" visits parents
-// first, "inward" children first; depth-first numbering makes both a plain loop.
+// Sweeps of all algorithms: poses, velocities and momenta. "Outward" visits parents first, "inward"
+// children first; depth-first numbering makes both a plain loop.
 //
 //   Ω_K = 𝒯ⱽ Ω_L + E u + Ω_t                                (23)
 //   P*_K = M_K Ω_K + w_K + Σ 𝒯ᶠ P*_child,  p_K = Eᵀ P*_K     (26), (34); + I_r u of a rotor
@@ -47,7 +47,7 @@ void place_body(Workspace<Space, S>& w, std::size_t k, const S& t, const S* q, b
   }
 }
 
-/// Edges at (q, t); poses in ground axes too when asked. Cost O(bodies), one sine and cosine per
+/// Edges at (q, t), with poses in ground axes when asked. O(bodies), one sine and cosine per
 /// revolute joint.
 template <class Space, class S>
 void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_poses) {
@@ -55,7 +55,7 @@ void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_pos
   for (std::size_t k = 0; k < w.body.size(); ++k) place_body(w, k, t, q, with_poses);
 }
 
-/// Ω_t of (13): prescribed joint motion, or what a user joint moves with t alone, added to V.
+/// Adds Ω_t of (13) to V: prescribed joint motion, or motion of a user joint with t alone.
 template <class Space, class S>
 void add_drive(const typename Model<Space>::Body& b, const typename Workspace<Space, S>::Body& s,
                typename Space::template Motion<S>& v) {
@@ -133,8 +133,8 @@ void momenta_inward(Workspace<Space, S>& w, S* p) {
       for (int i = 0; i < b.nv; ++i) p[b.u + i] += b.rotor * w.body[k].rotor_rate[i];
 }
 
-/// Generalised force of a joint's own spring, damper, torque, friction
-/// −friction · u / √(u² + friction_rate²) and stops (joint_stop.h).
+/// Generalised force of a joint's own spring, damper, torque, friction −friction · u / √(u² +
+/// friction_rate²) and stops (joint_stop.h).
 template <class Body, class S>
 S joint_force(const Body& b, const S& q, const S& u) {
   const S force = b.torque - b.stiffness * (q - b.rest) - b.damping * u;
@@ -171,7 +171,7 @@ void momentum_rates_inward(Workspace<Space, S>& w, const S* q, const S* u, S* pd
   }
 }
 
-/// q̇ of the whole tree from its rates.
+/// q̇ of the whole tree from u.
 template <class Space, class S>
 void coordinate_rates(const Model<Space>& model, const S* q, const S* u, S* qdot) {
   for (const auto& b : model.bodies)

@@ -1,6 +1,5 @@
 #pragma once
-// What a model takes of the formulas of a scene: signals, and forces along them. Included only
-// where models are built.
+// Signals and formula forces of a model, from a scene. Included only where models are built.
 
 #include <momenta/core/kernel/model.h>
 #include <momenta/core/scene/formula.h>
@@ -23,7 +22,7 @@ class SignalTaker {
   SignalTaker(const Tree& tree, const Scene& scene, Model<Space>& model)
       : tree_(tree), scene_(scene), model_(model) {}
 
-  /// Its place in model.signals.
+  /// Adds a signal; gives its place in model.signals.
   int take(const Signal& signal) {
     Taken taken;
     taken.is_rate = is_rate(signal.kind);
@@ -64,7 +63,7 @@ class SignalTaker {
     return add(std::move(taken));
   }
 
-  /// A component of a wrench: of its force, or of its torque.
+  /// A component of a wrench's force, or of its torque.
   int take_component(const ForceSpec& wrench, int i, bool of_torque) {
     Taken taken;
     const int body = tree_.body(wrench.body), axes_of = wrench.in_body_axes ? body : -1;
@@ -79,7 +78,7 @@ class SignalTaker {
     return add(std::move(taken));
   }
 
-  /// Two points of bodies, as springs and bushings have them.
+  /// Two points of bodies, for springs and bushings.
   template <class Between>
   void take_points(const ForceSpec& f, Between& between) {
     between.parent = tree_.body(f.parent);
@@ -101,7 +100,7 @@ class SignalTaker {
       terms.push_back(term(f.joints[i], f.coordinates.empty() ? 0 : f.coordinates[i], f.ratios[i]));
     return terms;
   }
-  /// Planar: what of a point or a direction of a body (−1: ground axes) lies across the plane.
+  /// Planar: component of a point or direction of a body (−1: ground axes) across the plane.
   double across(int body, const Eigen::Vector3d& v, bool is_point) const {
     if (body < 0) return model_.basis.col(2).dot(v);
     const Eigen::Isometry3d& frame = model_.frames[static_cast<std::size_t>(body)];
@@ -127,7 +126,7 @@ class SignalTaker {
   Model<Space>& model_;
 };
 
-/// The forces that formulas give. @pre the scene is valid
+/// Adds the forces given by formulas. @pre the scene is valid
 template <class Space>
 void take_formulas(const Scene& scene, SignalTaker<Space>& taker, Model<Space>& model) {
   using Force = typename Model<Space>::FormulaForce;
@@ -159,7 +158,7 @@ void take_formulas(const Scene& scene, SignalTaker<Space>& taker, Model<Space>& 
       }
       model.formula_forces.push_back(std::move(force));
     } else if (!f.law.empty()) {
-      // the first of its own names is what it acts along
+      // the first of its names is the signal it acts along
       add("law", f.law, taker.take(own.front().signal), f.kind == "torque" ? 1 : -1);
     }
     for (int i = 0; i < 3; ++i) {

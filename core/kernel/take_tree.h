@@ -1,6 +1,6 @@
 #pragma once
-// What a model takes over from the tree and the scene as it stands, whatever its algebra: joints,
-// masses and forces. Included only where models are built.
+// Parts of a model that do not depend on its algebra: joints, masses and forces of tree and scene.
+// Included only where models are built.
 
 #include <momenta/core/kernel/take_formulas.h>
 #include <momenta/core/kernel/user_motion.h>
@@ -38,7 +38,7 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.rotor = b.rotor;
     model.has_rotors |= m.has_rotor();
     if (b.kind == JointKind::user) {
-      m.law = static_cast<const UserFormula*>(b.law.get());  // as JointFormula sees to
+      m.law = static_cast<const UserFormula*>(b.law.get());  // ensured by JointFormula
       m.user = static_cast<int>(model.laws.size());
       model.laws.push_back(b.law);
     }
@@ -49,20 +49,20 @@ void take_joints(const Tree& tree, Model<Space>& model) {
   }
 }
 
-/// The stops of what has limits: a joint, or a force along a length.
+/// Stops of a joint, or of a force along a length, with limits.
 template <class Spec>
 JointStop stop_of(const Spec& s) {
   if (!s.limits) return {};
   return {(*s.limits)[0], (*s.limits)[1], s.stop_stiffness, s.stop_damping, s.stop_width};
 }
 
-/// Springs, bushings, wrenches and formulas, stops of spherical joints; needs the frames of all
+/// Springs, bushings, wrenches and formulas, stops of spherical joints. Needs the frames of all
 /// bodies.
 template <class Space>
 void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
   constexpr bool in_plane = Space::dimension == 3;
   SignalTaker<Space> taker(tree, scene, model);
-  // What springs and bushings have alike: two points of bodies, k and c.
+  // Common to springs and bushings: two points, of bodies k and c.
   const auto take_points = [&](const ForceSpec& f, auto& between) {
     taker.take_points(f, between);
     between.stiffness = f.stiffness;
@@ -75,7 +75,7 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
     bushing.rotational_damping = f.rotational_damping;
     bushing.stop = stop;
     if constexpr (!in_plane) {
-      // Σ p_i c_iᵀ: p_i the axes of the child without couple, c_i those it has
+      // Σ p_i c_iᵀ: p_i the child's axes without couple, c_i its axes
       const Eigen::Quaterniond turn = f.rotation.normalized();
       for (int i = 0; i < 3; ++i) {
         const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
@@ -101,7 +101,7 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
   for (const ForceSpec& f : scene.forces) {
     if (!f.law.empty()) continue;  // take_formulas.h
     const bool of_length = f.kind == "spring-damper" || f.kind == "coordinate-spring";
-    const bool told = f.limits && f.kind == "spring-damper";  // its length is asked for
+    const bool told = f.limits && f.kind == "spring-damper";  // the sentences ask for its length
     if (of_length && f.stiffness == 0 && f.damping == 0 && !stop_of(f).acts() && !told) continue;
     if (f.kind == "spring-damper") {
       typename Model<Space>::Spring spring;

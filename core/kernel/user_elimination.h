@@ -1,13 +1,13 @@
 #pragma once
-// The elimination of a user joint, whose E has n = 1 … 6 columns. One column after the other is the
-// factorisation M_j = EᵀM*E = L D Lᵀ without forming M_j: with M⁰ = M*, D⁰ = D
+// Elimination of a user joint, whose E has n = 1 … 6 columns. Column by column it factors M_j =
+// EᵀM*E = L D Lᵀ without forming M_j: with M⁰ = M*, D⁰ = D
 //
 //   y_j = Mʲ E_j,  d_j = E_jᵀ y_j,  h_j = y_j / d_j,  Mʲ⁺¹ = Mʲ − y_j h_jᵀ        (46), (47)
 //   e_j = r_j − E_jᵀ Dʲ,  Dʲ⁺¹ = Dʲ + h_j e_j                                    (48)
 //   u_j = e_j / d_j − h_jᵀ W, then W += E_j u_j, from the last column to the first (45)
 //
-// and L_ij = E_iᵀ h_j for i > j. M' = Mⁿ has no exact zeros along E, as it has for built-in joints:
-// an axis of a joint inward that moves along one of E's, and nothing else, may find rounding there.
+// and L_ij = E_iᵀ h_j for i > j. M' = Mⁿ has no exact zeros along E, unlike for built-in joints: a
+// joint inward that moves along one of E's axes alone may find rounding there.
 
 #include <momenta/core/kernel/joint.h>
 
@@ -22,8 +22,8 @@ struct UserRecord {
   S pivot[6]{}, inverse[6]{}, e[6]{};  ///< d_j, 1 / d_j, e_j
 };
 
-/// M* in `m` becomes M'; false where a pivot is not positive, or no more than what rounding leaves
-/// of all the inertia that the column moves.
+/// M* in `m` becomes M'; false where a pivot is not positive, or within rounding of all the inertia
+/// that the column moves.
 template <class S>
 bool eliminate_user(const Model<Spatial>::Body& b, UserRecord<S>& x,
                     Spatial::ArticulatedInertia<S>& m) {
@@ -77,7 +77,7 @@ Spatial::Force<S> user_reduced_momentum(const Model<Spatial>::Body& b, const Use
   return P;
 }
 
-/// u; W becomes W + E u.
+/// u of the joint; W becomes W + E u.
 template <class S>
 void solve_user(const Model<Spatial>::Body& b, const UserRecord<S>& x, Spatial::Motion<S>& W,
                 S* u) {

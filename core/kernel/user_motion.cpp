@@ -20,7 +20,7 @@ void user_motion(const UserFormula& joint, const Jet* u, UserMotion<Jet>& m) {
 void user_motion(const UserFormula& joint, const LocalDual* u, UserMotion<LocalDual>& m) {
   const int n = joint.coordinates();
   Dual8 rates[6];
-  // Directions q_0 … q_5 and u_0, u_1 at first; then, where there are more rates, u_2 … u_5.
+  // Directions first q_0 … q_5 and u_0, u_1; then, for more rates, u_2 … u_5.
   const auto evaluate = [&](bool by_q, int first_rate, UserMotion<Dual8>& at) {
     at.t = Dual8(m.t.a);
     for (int i = 0; i < n; ++i) {
@@ -44,7 +44,7 @@ void user_motion(const UserFormula& joint, const LocalDual* u, UserMotion<LocalD
   int k = 0;
   each_number(m, [&](LocalDual& x) {
     x = LocalDual(of_first[k].a);
-    // Zeros too: what hangs on what must not depend on values.
+    // Zeros too: the pattern must not depend on values.
     const auto add = [&x](const LocalDual& by, double slope) {
       x = LocalDual::sum(x.a, x, 1, by, slope);
     };

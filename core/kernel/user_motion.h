@@ -1,19 +1,19 @@
 #pragma once
-// What the formula of a user joint gives at one configuration. From the pose (R, r)(t, q) of the
-// child's joint frame in the parent's, all in child axes:
+// Motion of a user joint from its formula. From the pose (R, r)(t, q) of the child's joint frame in
+// the parent's, all in child axes:
 //
 //   E_j = (Rᵀ ∂r/∂q_j, vee(Rᵀ ∂R/∂q_j)),   Ω_t = (Rᵀ ∂r/∂t, vee(Rᵀ ∂R/∂t))          (13)
 //   Ė, dΩ_t/dt: the derivatives of these along (q̇, ṫ) = (u, 1)                       (35)
 //
 // The formula is evaluated for double, Dual<double, 1>, Dual8 and Jet, whose derivatives are exact,
 // one direction at a time for other dual numbers, and lane by lane for packs: out of line, by code
-// compiled once for any machine. Directions from one state go through Dual8. Of a LocalDual the
-// derivatives by the twelve numbers q and u come from Dual8, and the chain rule gives the rest,
+// compiled once for any machine. Directions go through Dual8. LocalDual takes the derivatives by
+// the twelve numbers q and u from Dual8, and the chain rule,
 //
 //   y = y(q, u),   dy = Σ_j ∂y/∂q_j dq_j + ∂y/∂u_j du_j,   t a constant.
 //
-// Every other scalar goes through double: long double has the digits of a double there, a Counted
-// does not see the operations of the formula.
+// Other scalars go through double: long double has the digits of a double there, and Counted does
+// not see the operations of the formula.
 
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/scalar/dual.h>
@@ -34,7 +34,7 @@ struct UserMotion {
   Spatial::Motion<S> E_rate[6], drift_rate;  ///< Ė, dΩ_t/dt
 };
 
-/// Calls f on every number that user_motion computes, in one order for all S.
+/// Calls f on every number computed by user_motion, in one order for all S.
 template <class S, class F>
 void each_number(UserMotion<S>& m, F&& f) {
   for (auto& x : m.rotation.x) f(x);
@@ -50,17 +50,16 @@ void each_number(UserMotion<S>& m, F&& f) {
 constexpr int user_numbers_without_rates = 12 + 7 * 6;
 constexpr int user_numbers = user_numbers_without_rates + 7 * 6;
 
-/// What the recursions take of the formula: the pose, E, Ω_t and their rates along u (null: no
-/// rates), in each of their scalars.
+/// Pose, E, Ω_t and their rates along u (null: no rates), in each scalar of the recursions.
 class UserFormula : public JointFormula {
  public:
-  /// At m.t and m.q.
+  /// Motion at m.t and m.q.
   virtual void move(const double* u, UserMotion<double>& m) const = 0;
-  /// With one directional derivative.
+  /// The same with one directional derivative.
   virtual void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const = 0;
-  /// With eight.
+  /// The same with eight directional derivatives.
   virtual void move(const Dual8* u, UserMotion<Dual8>& m) const = 0;
-  /// Along a curve in t and q, with two directions from it.
+  /// The same along a curve in t and q, with two directions.
   virtual void move(const Jet* u, UserMotion<Jet>& m) const = 0;
 };
 
@@ -71,12 +70,12 @@ void user_motion(const UserFormula& joint, const Dual<double, 1>* u,
 void user_motion(const UserFormula& joint, const Dual8* u, UserMotion<Dual8>& m);
 void user_motion(const UserFormula& joint, const Jet* u, UserMotion<Jet>& m);
 void user_motion(const UserFormula& joint, const LocalDual* u, UserMotion<LocalDual>& m);
-/// The same in plain arrays: six q and u, and user_numbers results.
+/// The same in plain arrays: six q and u; user_numbers results.
 void user_motion(const UserFormula& joint, double t, const double* q, const double* u,
                  double* numbers);
 
-/// The same on Dual8 in plain arrays: t, six q and u, user_numbers results, each its value and
-/// eight derivatives.
+/// The same on Dual8 in plain arrays: t, six q and u; user_numbers results; value and eight
+/// derivatives of each.
 void user_motion(const UserFormula& joint, const double* t, const double* q, const double* u,
                  double* numbers);
 

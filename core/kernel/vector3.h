@@ -1,6 +1,6 @@
 #pragma once
-// Vectors, symmetric and general 3 × 3 matrices of any scalar, as plain aggregates whose elements
-// stay in registers, and how each turns about a coordinate axis. Eigen stays outside the kernels.
+// Vectors, symmetric and general 3 × 3 matrices of any scalar, as plain aggregates that stay in
+// registers, and their turns about coordinate axes. No Eigen in the kernels.
 
 #include <cmath>
 
@@ -107,8 +107,8 @@ Vec3<S> operator*(const Sym3<S>& m, const Vec3<S>& v) {
            m.x[2] * v[0] + m.x[4] * v[1] + m.x[5] * v[2]}};
 }
 
-/// Inverse by m = L D Lᵀ: backward stable, where cofactors lose the square of the condition number.
-/// m is positive definite when all three `pivots` D are positive; the caller checks.
+/// Inverse by m = L D Lᵀ: backward stable, unlike cofactors. m is positive definite when all
+/// `pivots` D are positive; the caller checks.
 template <class S>
 Sym3<S> inverse(const Sym3<S>& m, Vec3<S>& pivots) {
   const S i0 = S(1.0) / m.x[0];
@@ -184,9 +184,8 @@ void turn(Mat3<S>& m, const C& c, const C& s) {
   m(Y, X) = yx;
 }
 
-/// Unit quaternion w x y z to the rotation that takes child components to parent components. The
-/// formula is homogeneous of degree zero, so a quaternion that has drifted off unit length still
-/// gives a rotation.
+/// Rotation from child to parent components by a unit quaternion w x y z. Homogeneous of degree
+/// zero: a quaternion off unit length still gives a rotation.
 template <class S>
 [[gnu::always_inline]] inline Mat3<S> rotation_by(const S& w, const S& x, const S& y, const S& z) {
   const S two = S(2.0) / (w * w + x * x + y * y + z * z);
@@ -206,8 +205,8 @@ template <class S>
 Mat3<S> rotation_of(const S* quaternion) {
   return rotation_by(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
 }
-/// Rᵀ g of that rotation without R, for one direction: with v = (x, y, z) and t = 2 v × g / |q|²,
-/// Rᵀ g = g − w t + v × t.
+/// Rᵀ g of one direction without R: with v = (x, y, z) and t = 2 v × g / |q|², Rᵀ g = g − w t + v ×
+/// t.
 template <class S>
 [[gnu::always_inline]] inline Vec3<S> turned_back_by(const S& w, const S& x, const S& y, const S& z,
                                                      const Vec3<double>& g) {

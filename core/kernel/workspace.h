@@ -1,6 +1,6 @@
 #pragma once
-// One flat array of everything a sweep computes, body by body in depth-first order. Sized once; no
-// sweep allocates.
+// Results of all sweeps in one flat array, body by body in depth-first order. Sized once; no sweep
+// allocates.
 
 #include <momenta/core/kernel/forced_bodies.h>
 #include <momenta/core/kernel/model.h>
@@ -22,21 +22,21 @@ struct Workspace {
     // poses_outward
     typename Space::template Edge<S> edge;  ///< way from the parent at this configuration
     typename Space::template RigidInertia<S> inertia;  ///< planar only: turned to ground axes
-    typename Space::template Pose<S> pose;  ///< in ground axes; only where loops or forces need it
-    Vector step;  ///< with it, in space: from the parent's O to its own, ground axes
+    typename Space::template Pose<S> pose;             ///< ground axes; only for loops or forces
+    Vector step;  ///< in space, with poses: from the parent's O to its own, ground axes
     S drive{}, drive_rate{}, drive_acceleration{};  ///< prescribed joint motion
-    // velocities_outward, rates_outward
+    // velocities_outward, accelerations_outward
     Motion V;                                ///< Ω_K
     Vec3<S> rotor_rate, rotor_acceleration;  ///< u and u̇ of a joint with a rotor
     Motion A;  ///< dΩ_K/dt: derivative in body axes; in the plane, of ground components
     Vector g;  ///< gravity in body axes
-    // articulated_masses_inward
+    // composite_inertias_inward
     Inertia M;  ///< composite inertia of the subtree: mass_matrix_inward
     // momenta_inward, wrenches
     Force P;  ///< P*_K, eq. (26)
     Force T;  ///< T*_K, eq. (27)
   };
-  /// A joint at which a coordinate spring looks.
+  /// State of a joint under a coordinate spring or signal.
   struct Sprung {
     S coordinate{}, rate{};
   };
@@ -53,9 +53,9 @@ struct Workspace {
   std::vector<Body> body;
   std::vector<S> generalised;        ///< scratch, nv: generalised forces
   std::vector<Sprung> sprung;        ///< poses_outward, velocities_outward
-  std::vector<UserMotion<S>> users;  ///< what the edges of user joints point to
-  mutable std::vector<S> formulas;   ///< scratch: formula_force.h
-  std::vector<ForcedBody> forced;    ///< those that body_force_rates() places
+  std::vector<UserMotion<S>> users;  ///< motions of user joints, pointed to by edges
+  mutable std::vector<S> formulas;   ///< scratch of formula_force.h
+  std::vector<ForcedBody> forced;    ///< bodies placed by body_force_rates()
   S time{};                          ///< poses_outward
 
   /// The rigid inertia of body k in the axes the sweeps work in.
@@ -67,7 +67,7 @@ struct Workspace {
   }
 
  private:
-  /// Of the longest formula: its variables, its values, its tape.
+  /// Room for the longest formula: variables, values, tape.
   static std::size_t room_of(const Model<Space>& m) {
     std::size_t most = 0;
     for (const auto& force : m.formula_forces)
@@ -77,8 +77,8 @@ struct Workspace {
   }
 };
 
-/// Right-hand sides X on their way through a solve with M by the recursion: M_j⁻¹ e of revolute
-/// joints, and what waits at bodies with several children, D inward and Ω outward.
+/// Right-hand sides X during a solve with M by the recursion: M_j⁻¹ e of revolute joints, and D
+/// inward and Ω outward at bodies with several children.
 template <class Space, class X>
 struct MassSolution {
   template <class Tree>

@@ -35,7 +35,7 @@ class LagrangianNames final : public FormulaNames {
     const std::string meant = reading::did_you_mean(name, near);
     return !meant.empty() ? meant : ", expected one of: " + reading::listed(near);
   }
-  /// "der(x)" and the like of other notations.
+  /// Hint on rates in other notations: "der(x)".
   std::string expected_in_brackets(std::string_view word, std::string_view) const override {
     if (find(word) < names_.size()) return "";
     for (const char* elsewhere : {"dot", "der", "diff", "d", "D", "ddt", "derivative"})
@@ -57,14 +57,14 @@ class LagrangianNames final : public FormulaNames {
   std::size_t n_;
 };
 
-/// Whether a number on its tape, made when it was read, is none: 1/0.
+/// Whether a number on the tape is not finite: 1/0.
 bool has_no_value(const Expression& formula) {
   return std::any_of(formula.tape().begin(), formula.tape().end(), [](const auto& in) {
     return in.operation == formula::Operation::number && !std::isfinite(in.number);
   });
 }
 
-/// Reads formulas of one scene; sentences open with whose they are.
+/// Reads the formulas of one scene; `who` opens the sentences.
 class Reader {
  public:
   Reader(const Scene& scene, LagrangianFormulas& all)
@@ -89,7 +89,7 @@ class Reader {
                        e.what());
     }
   }
-  /// One of q and t alone.
+  /// A formula of q and t alone.
   Expression of_positions(const FormulaSpec& formula, const std::string& who,
                           const char* expected) {
     Expression read = this->read(formula, who);
@@ -100,7 +100,7 @@ class Reader {
                          expected);
     return read;
   }
-  /// One that changes.
+  /// A formula of something that changes.
   Expression of_event(const FormulaSpec& formula, const std::string& who) {
     Expression read = this->read(formula, who);
     for (const int v : read.variables())
@@ -108,12 +108,12 @@ class Reader {
     throw SceneError(scene_.where(formula.at) + who + ", " + in_quotes(formula.text) +
                      ", takes nothing that changes, expected t, a coordinate or a rate in it");
   }
-  /// L with jumps or corners in q̇ has no momenta there; where what multiplies rates jumps with q,
-  /// forces are impulses.
+  /// A formula without jumps or corners in q̇, where L has no momenta; where a factor of a rate
+  /// jumps with q, forces are impulses.
   Expression smooth_in_rates(const FormulaSpec& formula, const std::string& who) {
     using O = formula::Operation;
     Expression read = this->read(formula, who);
-    // Of each value on the tape a rate and a coordinate that it takes, and one that it jumps with;
+    // For each value on the tape: a rate and a coordinate in it, and a coordinate it jumps with;
     // -1: none.
     std::vector<int> rate, place, jump;
     const auto take = [](std::vector<int>& all, const formula::Instruction& in) {

@@ -13,13 +13,13 @@
 namespace momenta {
 
 struct LagrangianFormulas {
-  /// @pre the scene has a Lagrangian. @throws SceneError: the place, the formula and why it is none
+  /// @pre the scene has a Lagrangian. @throws SceneError: the place, the formula and its fault
   explicit LagrangianFormulas(const Scene& scene);
 
-  /// The name that formulas have for the rate of a coordinate.
+  /// The name of a coordinate's rate in formulas.
   static std::string rate_name(const std::string& coordinate) { return coordinate + ".dot"; }
 
-  std::vector<std::string> names;  ///< of the variables
+  std::vector<std::string> names;  ///< names of the variables
   std::optional<Expression> lagrangian, kinetic, potential;
   std::vector<Expression> forces, constraints, events;  ///< in the order of the scene
   std::vector<bool> uses_parameter;                     ///< by parameter of the scene

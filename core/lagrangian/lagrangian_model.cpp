@@ -194,11 +194,11 @@ class Writer {
         std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.name == name; }) -
         all.begin());
   }
-  /// A block of variables from `first`, and where those stand that it changes with.
+  /// A block of variables from `first`, and where the block of its rates begins.
   struct Way {
     int first, direction;
   };
-  /// dy/dt of a y(q, t, v): the blocks, and t itself.
+  /// dy/dt of y(q, t, v): over the blocks, and by t itself.
   int along(int y, const std::vector<Way>& ways) {
     int sum = gradient(y, range(2 * n_, 1)).front();
     for (const Way& way : ways) {
@@ -214,7 +214,7 @@ class Writer {
     const Instruction& in = tape_[y];
     return (in.operation == Operation::number && in.number == 0) || is_zero_value(of(y), 0);
   }
-  /// Whether entry i, j of M, at this place, is not zero. @throws SceneError where it has rates
+  /// Whether entry i, j of M, at place y, is not zero. @throws SceneError where it has rates
   bool is_there(int y, int i, int j) const {
     const Expression entry = of(y);
     for (const int v : entry.variables()) {
@@ -231,9 +231,9 @@ class Writer {
     }
     return !is_zero(y);
   }
-  /// The places of M with, in each column, all ancestors: the nearest row before it that a column
-  /// has, once those that hang on it have gone, is its parent. `there[k][i]`: row i ≤ k of column
-  /// k.
+  /// Places of M with, in each column, all ancestors in the elimination tree: a column's parent is
+  /// the nearest row before it, once its descendants are eliminated. `there[k][i]`: row i ≤ k of
+  /// column k.
   std::vector<LagrangianModel::Entry> with_ancestors(std::vector<std::vector<char>> there) const {
     std::vector<int> parent(there.size(), -1);
     for (std::size_t k = there.size(); k-- > 0;) {

@@ -1,5 +1,5 @@
 #pragma once
-// What forms evaluate of a Lagrangian, as tapes of exact derivatives. With L quadratic in q̇,
+// The tapes of exact derivatives of a Lagrangian that forms evaluate. With L quadratic in q̇,
 //
 //   p = ∂L/∂q̇ = M(q, t) q̇ + b(q, t),        M = ∂²L/∂q̇∂q̇,   b = ∂L/∂q̇ at q̇ = 0
 //   ṗ = ∂L/∂q + Q + Φ̇_qᵀσ                    (8), p with Φ_qᵀσ in it
@@ -29,7 +29,6 @@ namespace momenta {
 
 /// Tapes over the variables x = (q, q̇, t, v, a, s); n coordinates, m constraints.
 struct LagrangianModel {
-  /// A place of a matrix.
   struct Entry {
     int row, column;
   };
@@ -40,11 +39,11 @@ struct LagrangianModel {
   };
 
   int n, m;
-  int rate(int i) const { return n + i; }                  ///< of q̇_i in x
-  int time() const { return 2 * n; }                       ///< of t
-  int direction(int i) const { return 2 * n + 1 + i; }     ///< of v_i
-  int acceleration(int i) const { return 3 * n + 1 + i; }  ///< of a_i
-  int multiplier(int i) const { return 4 * n + 1 + i; }    ///< of s_i
+  int rate(int i) const { return n + i; }                  ///< place of q̇_i in x
+  int time() const { return 2 * n; }                       ///< place of t
+  int direction(int i) const { return 2 * n + 1 + i; }     ///< place of v_i
+  int acceleration(int i) const { return 3 * n + 1 + i; }  ///< place of a_i
+  int multiplier(int i) const { return 4 * n + 1 + i; }    ///< place of s_i
   int variables() const { return 4 * n + 1 + m; }          ///< size of x
 
   Expression positions;          ///< Φ (m): of q, t
@@ -59,19 +58,19 @@ struct LagrangianModel {
   Expression kinetic;            ///< ½ q̇ᵀM q̇: of q, q̇, t
   Expression potential;          ///< −L(q, 0, t): of q, t
   Expression power;              ///< Q·q̇ − L_t: of q, q̇, t
-  /// M: upper triangle, of q, t. With column j all its ancestors in the elimination tree, from the
-  /// last coordinate to the first, are in the pattern, so that a factor fills no other place.
+  /// M: upper triangle, of q, t. Column j has all its ancestors in the elimination tree, from the
+  /// last coordinate to the first, so that a factor fills no other place.
   Entries mass;
   Entries constraint;  ///< Φ_q: of q, t
   bool in_time;        ///< t is in a formula
   bool linear;         ///< b is not zero
-  bool balanced;       ///< Q is zero at rest: what is left has a potential
+  bool balanced;       ///< Q is zero at rest: all other forces have a potential
   bool has_power;      ///< power is not zero
   bool moving;         ///< Φ_t is not zero: constraints do work
 };
 
-/// @pre a valid scene with a Lagrangian. @throws SceneError: a formula that is none, an L that is
-/// not quadratic in the rates. O(n tape) and, for the pattern of M, O(n²)
+/// @pre a valid scene with a Lagrangian. @throws SceneError: a fault of a formula, an L not
+/// quadratic in the rates. O(n tape) and, for the pattern of M, O(n²)
 LagrangianModel build_lagrangian_model(const Scene& scene);
 
 }  // namespace momenta

@@ -8,10 +8,9 @@
 //     template <class S> void constraints(const S* q, const S& t, S* phi) const;          // optional
 //   };
 //
-// It is called once, with numbers that write down what is done to them (core/expression/written.h):
-// the result is a Lagrangian of formulas, as if they had been typed. It has the same derivatives,
-// forms and measures, to the last bit where no definitions were needed, and may be written to a
-// file.
+// The class is called once, with numbers that record operations (core/expression/written.h): the
+// result is a Lagrangian of formulas, as if typed, to the last bit where no definitions were
+// needed; it may be written to a file.
 
 #include <momenta/core/expression/written.h>
 #include <momenta/core/scene/lagrangian.h>
@@ -23,12 +22,10 @@
 namespace momenta {
 
 /// The Lagrangian of a class as above. `coordinates` are those of q, in order, with units and
-/// start. `constraints` are the names, and whether it is an angle, of the values that
-/// system.constraints() gives, in order; its `equation` is not read. tau and phi come zeroed;
-/// a force that stays 0 is none.
-/// @throws std::logic_error: a constraint and a class without constraints(), or the reverse. What a
-/// scene asks of a Lagrangian, validate() and Mechanism ask, with their sentences. One call of each
-/// function, O(tape)
+/// start. `constraints`: name and kind (angle or length) of each value of system.constraints(), in
+/// order; `equation` is not read. tau and phi come zeroed; a force that stays 0 is none. @throws
+/// std::logic_error: a constraint and a class without constraints(), or the reverse. Other checks
+/// are those of validate() and Mechanism. One call of each function, O(tape)
 template <class System>
 LagrangianSpec lagrangian_of(const System& system,
                              std::vector<LagrangianSpec::Coordinate> coordinates,
@@ -44,7 +41,7 @@ concept WithConstraints = requires(const System& s, const Written* x, Written* y
   s.constraints(x, *x, y);
 };
 
-/// What formulas call q, q̇ and t.
+/// The names of q, q̇ and t in formulas.
 std::vector<std::string> formula_names(const std::vector<LagrangianSpec::Coordinate>& coordinates);
 /// Refuses constraints without names or functions. @throws std::logic_error
 void expect_constraints(bool has_function, std::size_t names);

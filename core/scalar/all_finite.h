@@ -4,15 +4,15 @@
 //
 //   Σ x_i · 0 = 0   if and only if all x_i are finite.
 //
-// So there is one comparison for any number of lists.
+// So one comparison serves any number of lists.
 
 #include <cstddef>
 #include <vector>
 
 namespace momenta {
 
-/// Σ x_i · 0 of the numbers taken so far. O(n); each list in four sums: a single one waits for
-/// itself at every addition.
+/// Σ x_i · 0 of the numbers taken so far. O(n); each list in four sums, since additions to a single
+/// one wait for each other.
 class FiniteSum {
  public:
   void take(double x) { sum_ += x * 0.0; }
@@ -26,14 +26,14 @@ class FiniteSum {
     if (n & 1) c += x[0] * 0.0;
     sum_ += (a + b) + (c + d);
   }
-  /// Whether none of them is infinite or not a number.
+  /// Whether all of them are finite.
   bool finite() const { return sum_ == 0; }
 
  private:
   double sum_ = 0;
 };
 
-/// Whether none of x (n) is infinite or not a number.
+/// Whether all of x (n) are finite.
 inline bool all_finite(const double* x, std::size_t n) {
   FiniteSum sum;
   sum.take(x, n);

@@ -4,8 +4,8 @@
 //   needed    the same after constants are folded: an operation of two constants costs nothing, nor
 //             does one with a constant 0 or ±1; what straight-line code for this very model would
 //             do
-// Changes of sign are free, subtractions count as additions; sines and cosines are counted
-// separately. There is one count per thread.
+// Changes of sign are free, subtractions count as additions; sines and cosines count separately.
+// One count a thread.
 
 #include <cmath>
 
@@ -14,8 +14,8 @@ namespace momenta {
 /// Operations by kind.
 struct Operations {
   long adds = 0;             ///< subtractions included
-  long multiplications = 0;  ///< of two numbers
-  long divisions = 0;        ///< of two numbers
+  long multiplications = 0;  ///< products of two numbers
+  long divisions = 0;        ///< quotients of two numbers
   long angles = 0;           ///< one for each pair of sine and cosine
   /// The sum without angles.
   long total() const { return adds + multiplications + divisions; }

@@ -65,7 +65,7 @@ struct Dual {
     for (int i = 0; i < N; ++i) r.b[i] = (x.b[i] - r.a * y.b[i]) * inverse;
     return r;
   }
-  // Mixed with plain numbers: no zero derivatives are carried along.
+  // Mixed with plain numbers without zero derivatives.
   template <std::same_as<double> T>
   friend Dual operator+(Dual x, T y) {
     x.a += S(y);
@@ -134,16 +134,16 @@ MOMENTA_INLINE bool all_positive(const Dual<S, N>& x) {
   return all_positive(x.a);
 }
 
-/// Eight directions at once, for code that is compiled for any machine.
+/// Eight directions at once, for code compiled for any machine.
 using Dual8 = Dual<double, 8>;
 
-/// W directions from one state in the lanes of a register. The value fills all lanes alike: a
-/// product is then three operations on whole registers and no broadcast.
+/// W directions from one state in the lanes of a register. The value fills all lanes: a product is
+/// three operations on whole registers, no broadcast.
 template <int W, int L>
 using Directions = Dual<Pack<W, L>, 1>;
 
-/// A Dual8 as plain numbers, its value and its derivatives: how directions pass to code that is
-/// compiled for any machine, and back.
+/// A Dual8 as plain numbers, value and derivatives, to pass between code compiled for different
+/// machines.
 constexpr int dual8_numbers = 9;
 inline void spread(const Dual8& x, double* to) {
   to[0] = x.a;

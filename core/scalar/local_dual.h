@@ -3,7 +3,7 @@
 //
 //   x = a + Σ_i b_i dy_i.
 //
-// What would depend on more is cut: the sum becomes a new unknown z of its own, with the row
+// A sum that depends on more is cut: it becomes a new unknown z with the row
 //
 //   dz − Σ_i b_i dy_i = 0,
 //
@@ -12,9 +12,9 @@
 //   ( A  B ) ( dy )   ( dr )
 //   ( C  T ) ( dz ) = (  0 ),     T unit lower triangular,  ∂r/∂y = A − B T⁻¹ C:
 //
-// the sweeps of a chain of n bodies give O(n) entries, where ∂r/∂y itself is full. Which sums are
-// cut depends on how many unknowns they hang on, never on their values; zeros of the model are
-// folded, unless Cuts is told that constants change with time.
+// the sweeps of a chain of n bodies give O(n) entries, where ∂r/∂y itself is full. Cuts depend on
+// the number of unknowns in a sum, never on values; zeros of the model are folded, unless Cuts is
+// told that constants change with time.
 // Source: Griewank and Walther, Evaluating Derivatives, section 10.3, the linearised computational
 // graph, intermediates of few arguments eliminated.
 
@@ -25,10 +25,10 @@
 
 namespace momenta {
 
-/// The rows of z while an evaluation runs; one a thread at a time, in `now`.
+/// The rows of z during an evaluation; one object a thread at a time, in `now`.
 class Cuts {
  public:
-  /// `unknowns`: how many dy there are; z are numbered behind them. `folds` zeros of the model.
+  /// `unknowns`: number of dy; z are numbered behind them. `folds`: zeros of the model are folded.
   void begin(int unknowns, bool folds) {
     unknowns_ = unknowns;
     folds_ = folds;
@@ -47,7 +47,7 @@ class Cuts {
   }
   bool folds() const { return folds_; }
   int size() const { return static_cast<int>(end_.size()); }
-  /// Terms of row i: [first(i), last(i)) of columns() and values(); dz itself is left out.
+  /// Terms of row i: [first(i), last(i)) of columns() and values(); without dz.
   std::size_t first(int i) const { return i == 0 ? 0 : end_[static_cast<std::size_t>(i) - 1]; }
   std::size_t last(int i) const { return end_[static_cast<std::size_t>(i)]; }
   const std::vector<int>& columns() const { return at_; }
@@ -123,7 +123,7 @@ struct LocalDual {
     }
     return r;
   }
-  /// value + s dx + t dy, cut where that has too many terms.
+  /// value + s dx + t dy, cut where it has too many terms.
   static LocalDual sum(double value, const LocalDual& x, double s, const LocalDual& y, double t) {
     if (y.terms == 0) return chain(x, value, s);
     if (x.terms == 0) return chain(y, value, t);

@@ -1,12 +1,10 @@
 #pragma once
-// Several states in one scalar: lane i of every number belongs to state i, so any kernel written
-// for one state evaluates Width of them at once. Widths follow the machine's registers: 2 doubles
-// on x86-64, 4 with AVX2 (level 3), 8 with AVX-512 (level 4); a wider pack than the target has is
-// slower than single states.
+// Several states in one scalar, state i in lane i: any kernel for one state evaluates Width at
+// once. Widths follow the machine's registers: 2 doubles on x86-64, 4 with AVX2 (level 3), 8 with
+// AVX-512 (level 4); a wider pack than the target has is slower than single states.
 //
-// `Level` is the x86-64 level the code is compiled for. It is part of the type, so that kernels
-// compiled for several levels in one library never share a symbol; Pack<1, Level> is a plain double
-// with that mark.
+// `Level` is the x86-64 level the code is compiled for. As part of the type it keeps kernels of
+// several levels in one library from sharing symbols; Pack<1, Level> is a double with that mark.
 
 #include <cmath>
 
@@ -41,11 +39,11 @@ struct Register<8> {
 template <int Width, int Level>
 struct Pack {
   using Lanes = typename Register<Width>::Doubles;
-  Lanes v;  ///< nothing unless set, as of plain doubles; Pack{} is zero
+  Lanes v;  ///< uninitialised, as plain doubles are; Pack{} is zero
 
   Pack() = default;
-  /// One broadcast: x − 0 is x whatever its sign, and folds; filling lane by lane compiles to as
-  /// many masked moves as there are lanes.
+  /// One broadcast: x − 0 is x whatever its sign, and folds; filling lane by lane compiles to one
+  /// masked move a lane.
   MOMENTA_INLINE Pack(double x) {  // NOLINT: constants mix freely
     if constexpr (Width == 1)
       v = x;
@@ -92,7 +90,7 @@ MOMENTA_INLINE Pack<W, L> sqrt(const Pack<W, L>& x) {
   return root;
 }
 
-/// The least of the lanes, NaN when one of them is: what a test for positive pivots has to look at.
+/// The least of the lanes, NaN when one is NaN: for tests of positive pivots.
 template <int W, int L>
 MOMENTA_INLINE double value_of(const Pack<W, L>& x) {
   double least = x.lane(0);

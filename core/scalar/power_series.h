@@ -100,8 +100,7 @@ double value_of(const PowerSeries<K>& x) {
   return x.c[0];
 }
 
-/// The time t as the numbers of S have it: a constant, but t + s on series, which run along a curve
-/// in time.
+/// The time t as a number of S: a constant, but t + s on series along a curve in time.
 template <class S>
 struct Moment {
   static S at(double t) { return S(t); }
@@ -123,8 +122,8 @@ struct Moment<Dual<PowerSeries<K>, N>> {
   }
 };
 
-/// A curve y_0 + y_1 s + … + y_5 s⁵ with two directions from it: what a derivative array of up to
-/// four differentiations takes.
+/// A curve y_0 + y_1 s + … + y_5 s⁵ with two directions: for derivative arrays of up to four
+/// differentiations.
 constexpr int jet_order = 5;
 using Jet = Dual<PowerSeries<jet_order>, 2>;
 

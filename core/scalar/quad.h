@@ -1,6 +1,6 @@
 #pragma once
-// Quadruple precision as a scalar for the kernels: __float128 with the functions they call, 113
-// bits of mantissa. Slow, made for references only. Link with libquadmath.
+// Quadruple precision for the kernels: __float128, 113 bits of mantissa. Slow, for references only.
+// Link with libquadmath.
 
 #include <momenta/core/scalar/dual.h>
 #include <quadmath.h>
@@ -46,11 +46,10 @@ inline double value_of(const Quad& x) {
 inline bool all_positive(const Quad& x) {
   return x.v > 0;
 }
-/// x where a > b, else y.
 inline Quad where_greater(const Quad& a, const Quad& b, const Quad& x, const Quad& y) {
   return a > b ? x : y;
 }
-/// What tells the size of a pivot to the choice of the next one.
+/// Size of a pivot, for the choice of the next one.
 inline double size_of(const Quad& x) {
   return x.v > 0 ? value_of(x) : 0;
 }

@@ -1,8 +1,8 @@
 #pragma once
 // Sines and cosines of many angles at once. Argument reduction by three constants that add up to
 // π/2 (Cody and Waite), then polynomials of degree 13 and 14 on |r| ≤ π/4: 2.3e-16 absolute error
-// for |x| below `reducible`; a pack that holds a larger angle, or none at all (NaN, infinity), goes
-// to the library lane by lane.
+// for |x| below `reducible`; packs with a larger angle, NaN or infinity go to the library lane by
+// lane.
 
 #include <momenta/core/scalar/dual.h>
 
@@ -18,13 +18,13 @@ template <int W, int L>
 MOMENTA_INLINE void sine_cosine_reduced(const Pack<W, L>& x, Pack<W, L>& sine, Pack<W, L>& cosine) {
   using V = typename Pack<W, L>::Lanes;
   using I = typename Register<W>::Integers;
-  // Adding 1.5·2⁵² rounds to the nearest integer and leaves it in the low bits.
+  // Adding 1.5·2⁵² rounds to the nearest integer, left in the low bits.
   const double to_integer = 6755399441055744.0;
   V k = x.v * 0.63661977236758134308 + to_integer;
   const I quadrant = (I)k;
   k = k - to_integer;
-  // Three parts of π/2, the first two with trailing zeros: their products with k are exact without
-  // a fused multiply-add.
+  // Three parts of π/2, the first two with trailing zeros: products with k are exact without a
+  // fused multiply-add.
   V r = ((x.v - k * 1.57079632673412561417e+00) - k * 6.07710050630396597660e-11) -
         k * 2.02226624879595063154e-21;
   const V z = r * r;
@@ -93,8 +93,8 @@ constexpr int native_width = Level >= 4   ? 8
                              : Level >= 3 ? 4
                                           : 2;
 
-/// Angles of one sweep and their sines and cosines. Of a single state at a level, joints are turned
-/// side by side, padded to whole registers, and the padding is computed along.
+/// Angles of one sweep, their sines and cosines. For a single state at a level, joints are turned
+/// side by side, padded to whole registers.
 template <class S>
 class Angles {
  public:
@@ -105,7 +105,7 @@ class Angles {
   MOMENTA_INLINE const S& cosine(std::size_t i) const { return cosine_[i]; }
   std::size_t size() const { return size_; }
   MOMENTA_INLINE void turn() { turn(size_); }
-  /// The first n alone.
+  /// Turns the first n alone.
   MOMENTA_INLINE void turn(std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
   }
@@ -116,8 +116,8 @@ class Angles {
 };
 template <int L>
 class Angles<Pack<1, L>> {
-  /// Eight at once save nothing: they wait for more angles, and while a register of eight is at
-  /// work the processor has one unit less for single numbers.
+  /// Eight at once save nothing: they wait for more angles, and registers of eight take one
+  /// execution unit from single numbers.
   static constexpr int width = native_width<L> < 4 ? native_width<L> : 4;
   using One = Pack<1, L>;
   using Wide = Pack<width, L>;
@@ -138,8 +138,8 @@ class Angles<Pack<1, L>> {
   }
 
  private:
-  /// One by one: angles were stored one by one a moment ago, and a load of all of them would wait
-  /// until the last has left the store buffer.
+  /// One by one: the angles were just stored singly, and a wide load would wait until the last has
+  /// left the store buffer.
   MOMENTA_INLINE Wide gathered(std::size_t i) const {
     const double* const a = reinterpret_cast<const double*>(angle_.data() + i);
     if constexpr (width == 4)
@@ -155,7 +155,7 @@ class Angles<Pack<1, L>> {
   std::size_t size_;
   std::vector<Wide> angle_, sine_, cosine_;
 };
-/// Values alike in all lanes are turned once, side by side with those of other joints.
+/// Values equal in all lanes are turned once, side by side with those of other joints.
 template <int W, int L>
 class Angles<Directions<W, L>> {
   using S = Directions<W, L>;

@@ -1,5 +1,5 @@
 #pragma once
-// Which scenes have bearings with friction, and the refusal of what cannot take it.
+// Bearings with friction in a scene, and their refusal.
 
 #include <momenta/core/scene/scene.h>
 
@@ -8,8 +8,8 @@ namespace momenta {
 /// The first joint with a bearing; null: none.
 const JointSpec* with_bearing(const Scene& scene);
 
-/// @throws SceneError where a joint has a bearing, whose friction `what` cannot take: "the
-/// linearisation"
+/// @throws SceneError where a joint has a bearing: `what`, "the linearisation", cannot take its
+/// friction
 void refuse_bearings(const Scene& scene, const std::string& what);
 
 }  // namespace momenta

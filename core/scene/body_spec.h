@@ -1,5 +1,5 @@
 #pragma once
-// A body of a scene, and the solid by which it is drawn and weighed.
+// A body of a scene, and the solid that draws and weighs it.
 
 #include <momenta/core/scene/location.h>
 
@@ -8,10 +8,10 @@
 
 namespace momenta {
 
-/// A solid of uniform density. A body is drawn with it, and it gives `com` and `inertia` where
-/// these are not written out; what is written out takes precedence, each for itself. A rod is
-/// slender and reaches from the body origin along its axis, its centre of mass half way. The other
-/// shapes are centred on the body origin, or on `com` where that is given. A point has no inertia.
+/// A solid of uniform density. It draws a body, and gives `com` and `inertia` each where these are
+/// not written out. A rod is slender and reaches from the body origin along its axis, its centre of
+/// mass half way. The other shapes are centred on `com` where that is given, else on the body
+/// origin. A point has no inertia.
 struct Shape {
   std::string kind;  ///< rod box cylinder sphere point, or empty
   /// rod: length, 0, 0; box: x, y, z; cylinder: length, radius, 0; sphere: radius, 0, 0 [m]
@@ -22,10 +22,9 @@ struct Shape {
 /// A rigid body.
 ///
 /// In a file, inertia is [xx, yy, zz, xy, xz, yz], or [xx, yy, zz], or one number: the moment about
-/// z of a planar body, stored as that of a thin plate, diag(Izz/2, Izz/2, Izz). (No distribution of
-/// mass has the inertia diag(0, 0, Izz): no principal moment exceeds the sum of the other two. Ixx
-/// and Iyy have no effect on motion in the plane.) A body with a mass has a shape or an inertia; a
-/// body with mass 0 is massless.
+/// z of a planar body, stored as that of a thin plate, diag(Izz/2, Izz/2, Izz). (No body has
+/// diag(0, 0, Izz): no principal moment exceeds the sum of the others. Ixx and Iyy have no effect
+/// in the plane.) A body with a mass has a shape or an inertia.
 struct BodySpec {
   std::string name;                               ///< any but "ground"
   double mass = 0;                                ///< [kg]
@@ -33,10 +32,9 @@ struct BodySpec {
   /// About the centre of mass, body axes [kg m²]; its principal moments a ≤ b ≤ c satisfy
   /// 0 ≤ a and c ≤ a + b.
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  /// The inertia is taken as it is, even if no rigid body can have it: some robot files contain
-  /// such inertias.
+  /// The inertia is taken as it is, even if no rigid body can have it, as in some robot files.
   bool any_inertia = false;
-  Shape shape;  ///< how it is drawn; gives com and inertia where they are not written
+  Shape shape;  ///< draws the body; gives com and inertia where these are not written
   Location at;  ///< where the file has it
 };
 

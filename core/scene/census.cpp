@@ -8,7 +8,7 @@
 namespace momenta::reading {
 namespace {
 
-/// The names of one namespace, with the place where each was given.
+/// The names of one namespace, each with its place in the file.
 class Names {
  public:
   Names(const Scene& scene, std::string what) : scene_(scene), what_(std::move(what)) {}

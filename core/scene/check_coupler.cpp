@@ -10,8 +10,8 @@
 namespace momenta::reading {
 namespace {
 
-/// Couplers and coordinate springs have joints, coordinates and ratios alike. `may_vanish`: the
-/// last ratio.
+/// Joints, coordinates and ratios of couplers and coordinate springs. `may_vanish`: the last ratio
+/// may be zero.
 template <class Sum>
 bool check_sum(const Scene& scene, const Census& census, const Sum& sum, const std::string& who,
                bool may_vanish) {

@@ -1,4 +1,4 @@
-// What drives prescribe: of joints coordinates, of loops coordinates and components of the origin.
+// Checks of drives: coordinates of joints; coordinates of loops and components of their origin.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
@@ -14,7 +14,7 @@
 namespace momenta::reading {
 namespace {
 
-/// What drives have: a coordinate or a component of the origin, by the name of its joint or loop.
+/// Driven coordinates and components of origins, each with its joint or loop.
 using Driven = std::set<std::pair<std::string, std::string>>;
 std::string coordinate_in_words(int coordinate) {
   return "coordinate " + std::to_string(coordinate);
@@ -47,7 +47,7 @@ std::string owner_of(const DriveSpec& drive) {
                             : "drive of loop " + in_quotes(drive.loop);
 }
 
-/// What a drive of a loop prescribes, and that a length starts positive.
+/// Checks the coordinate or component that a drive of a loop prescribes.
 void check_loop_drive(const Scene& scene, const Census& census, const DriveSpec& drive) {
   const std::string who = owner_of(drive);
   require(drive.joint.empty(), scene, drive.at, who,
@@ -84,7 +84,7 @@ void check_loop_drive(const Scene& scene, const Census& census, const DriveSpec&
                      " for a " + kind + " loop");
 }
 
-/// @pre the law is without fault
+/// Checks that a driven length starts positive. @pre the law is without fault
 void check_driven_length(const Scene& scene, const Census& census, const DriveSpec& drive) {
   const LoopSpec& loop = census.require_loop(drive.loop, drive.at, owner_of(drive));
   if (loop.kind != LoopKind::distance || !drive.origin.empty()) return;

@@ -1,4 +1,4 @@
-// Forces: what they act on, and that their numbers and formulas can be such.
+// Checks of forces: what they act on, their numbers and formulas.
 
 #include <momenta/core/expression/spline.h>
 #include <momenta/core/scene/formula.h>
@@ -33,7 +33,7 @@ void check_ends(const Scene& scene, const Census& census, const ForceSpec& force
           "origin must be finite [m]");
 }
 
-/// What springs along a length may have.
+/// Checks limits and dead band of springs along a length.
 void check_length(const Scene& scene, const ForceSpec& force, const std::string& who) {
   check_limits(scene, force, who);
   require(std::isfinite(force.dead_band) && force.dead_band >= 0, scene, force.at, who,

@@ -1,5 +1,5 @@
-// What validate() asks of a Lagrangian: that nothing of bodies stands beside it, that its names are
-// names in formulas, each of one thing, and that it has L or T.
+// validate() of a Lagrangian: no bodies beside it, names that formulas can take, each of one thing,
+// and L or T.
 
 #include <momenta/core/scene/validate_parts.h>
 #include <momenta/core/text/near_name.h>
@@ -12,7 +12,7 @@
 namespace momenta::reading {
 namespace {
 
-/// Letters, digits and _, a letter first, with dots between such parts.
+/// Letters, digits and _, a letter first in each part; parts are joined by dots.
 bool is_formula_name(std::string_view name) {
   const auto letter = [](char c) {
     return std::isalpha(static_cast<unsigned char>(c)) || c == '_';

@@ -28,7 +28,7 @@ std::string cycle_sentence(const std::vector<const JointSpec*>& cycle) {
 }  // namespace
 
 void check_tree(const Scene& scene) {
-  // inward[body]: the joint whose child it is
+  // by body: the joint that carries it
   std::map<std::string, const JointSpec*> inward;
   for (const JointSpec& joint : scene.joints) {
     const auto [known, fresh] = inward.emplace(joint.child, &joint);
@@ -44,8 +44,8 @@ void check_tree(const Scene& scene) {
                        ": the child of no joint, expected exactly one [[joint]] (of kind free "
                        "where nothing holds it)");
 
-  // Walk from each body towards the ground, until a body seen before. If that one belongs to this
-  // very walk, the walk has closed upon itself. Every joint is passed once: O(n log n).
+  // Walk from each body towards the ground, until a body seen before; in the same walk it closes a
+  // cycle. Every joint is passed once: O(n log n).
   std::map<const JointSpec*, std::size_t> walk_of;
   std::size_t walk = 0;
   for (const JointSpec& start : scene.joints) {
@@ -57,7 +57,7 @@ void check_tree(const Scene& scene) {
     }
     if (joint->parent == "ground" || walk_of.at(joint) != walk) continue;
 
-    // walked inwards; told outwards, from parent to child
+    // walked inwards; listed outwards, from parent to child
     std::vector<const JointSpec*> cycle;
     const JointSpec* member = joint;
     do {

@@ -1,5 +1,5 @@
 #pragma once
-// Curves in a plane of a body: where points of other bodies move, and outlines that touch.
+// Curves in a plane of a body: paths of points, and outlines that touch.
 
 #include <Eigen/Core>
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace momenta {
 
-/// A curve about a point of a body, in the plane across a loop's `axis`. Of a loop's parent it is
-/// in the loop frame, of its child in the child's axes.
+/// A curve about a point of a body, in the plane across a loop's `axis`. A parent's curve is in the
+/// loop frame, a child's in the child's axes.
 ///   - "circle": `radius` about the point
 ///   - "ellipse": about the point, `semi_axes` along `direction` and across it
 ///   - "spline": the cubic spline through `points`, over the length of its chords: closed, or

@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-/// t, and the functions that the drive brings.
+/// Names of a drive's formula: t and its functions.
 class OfTime final : public FormulaNames {
  public:
   explicit OfTime(const DriveSpec& drive) : drive_(drive) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Motion laws: a number f of a joint or loop as a function of time, with its first two derivatives.
+// Motion laws: a number f of a joint or loop as a function of time, with two derivatives.
 //
 // polynomial
 //   f = Σ cᵢ tⁱ;  f, ḟ, f̈ by one Horner scheme
@@ -33,10 +33,10 @@
 
 namespace momenta {
 
-/// Why a DriveSpec is not a valid motion law, in words; empty where it is valid.
+/// Why a DriveSpec is no valid motion law, in words; empty: it is.
 std::string law_fault(const DriveSpec& spec);
-/// Where the formula of a drive has corners or jumps, so that ḟ or f̈ do, the function that makes
-/// them; empty: it has none. @pre no fault
+/// The function in a drive's formula with corners or jumps, so that ḟ or f̈ has them; empty: none.
+/// @pre no fault
 std::string law_corner(const DriveSpec& spec);
 
 /// The motion law of a DriveSpec: f(t) and its first two derivatives. Immutable.
@@ -45,10 +45,10 @@ class MotionLaw {
   /// Solves the spline of a table. @throws SceneError with the sentence of law_fault
   explicit MotionLaw(const DriveSpec& spec);
 
-  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation
-  /// after a thread's first call. Cost
-  /// O(coefficients); for a table O(log points), for a formula O(its length). S needs + − ×, a
-  /// constructor from double, S < double, sin and cos in its namespace, and formula::Functions.
+  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation after a
+  /// thread's first call. O(coefficients); table O(log points), formula O(its length). S needs + −
+  /// ×, a constructor from double, S < double, sin and cos in its namespace, and
+  /// formula::Functions.
   template <class S>
   void evaluate(S t, S& f, S& fdot, S& fddot) const {
     switch (kind_) {
@@ -96,7 +96,7 @@ class MotionLaw {
     fddot = S(60 * rise / (duration_ * duration_)) * x * rest * (rest - x);
   }
 
-  /// The room of the tape is kept from call to call, one a thread.
+  /// Evaluates the tape of a formula; its line is kept from call to call, one a thread.
   template <class S>
   void by_tape(const S& t, S& f, S& fdot, S& fddot) const {
     thread_local std::vector<S> line;

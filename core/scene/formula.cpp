@@ -22,7 +22,7 @@ std::string named(std::string_view owner, std::string_view component) {
   return (is_plain_name(owner) ? name : "'" + name + "'") + "." + std::string(component);
 }
 
-/// Coordinates that are angles and displacements by themselves.
+/// Number of coordinates that are angles and displacements by themselves.
 int scalar_coordinates(const JointSpec& joint) {
   return joint.kind == JointKind::user ? 0 : static_cast<int>(scalar_coordinates_of(joint.kind));
 }
@@ -33,7 +33,7 @@ std::string component_of(const JointSpec& joint, bool rate, int i) {
          (scalar_coordinates(joint) == 1 ? std::string() : std::to_string(i));
 }
 
-/// The length of a spring-damper, the sum of a coordinate spring; empty: a force has none.
+/// Name of the length of a spring-damper, or of the sum of a coordinate spring; empty: none.
 std::string_view length_name(const ForceSpec& force) {
   if (force.kind == "spring-damper") return "length";
   return force.kind == "coordinate-spring" ? "l" : "";
@@ -71,7 +71,7 @@ FormulaReader::FormulaReader(const Scene& scene) : scene_(scene) {
     curves_.push_back(spline_fault(f.x, f.y, "x", "y").empty() ? curve_of(f) : nullptr);
 }
 
-/// What the names of one formula mean.
+/// Meanings of the names in one formula.
 class FormulaReader::Names final : public FormulaNames {
  public:
   Names(const FormulaReader& reader, std::span<const OwnName> own, bool of_time_alone = false)
@@ -140,7 +140,7 @@ class FormulaReader::Names final : public FormulaNames {
         "S.length or S.rate of a spring-damper S");
   }
 
-  /// "der(x)" and the like of other notations.
+  /// Hint on rates in other notations: "der(x)".
   std::string expected_in_brackets(std::string_view word, std::string_view) const override {
     if (of_time_alone_ || find(r_.parameters_, word)) return "";
     for (const char* elsewhere : {"dot", "der", "diff", "d", "D", "ddt", "derivative"})
@@ -148,8 +148,7 @@ class FormulaReader::Names final : public FormulaNames {
     return "";
   }
 
-  /// Of a name that is a joint's or a marker's and says nothing of it, or the beginning of one that
-  /// needs quotes.
+  /// Hint for the bare name of a joint or marker, or the beginning of a name that needs quotes.
   std::string of_an_owner(std::string_view name) const {
     if (const int* joint = find(r_.joints_, name)) {
       const JointSpec& j = r_.scene_.joints[static_cast<std::size_t>(*joint)];
@@ -187,7 +186,7 @@ class FormulaReader::Names final : public FormulaNames {
     signals.push_back(signal);
     return {static_cast<int>(signals.size()) - 1, 0};
   }
-  /// 'left-knee'.q and a.b.q: what has a number, and which number.
+  /// 'left-knee'.q and a.b.q: the owner, and its component.
   static std::pair<std::string_view, std::string_view> split(std::string_view name) {
     if (name.front() == '\'') {
       const std::size_t end = name.find('\'', 1);
@@ -234,7 +233,7 @@ class FormulaReader::Names final : public FormulaNames {
       refuse(&which, nullptr, nullptr, component, place);
     return {rate ? Kind::rate : Kind::coordinate, which, count == 1 ? 0 : i};
   }
-  /// Says what there is of that name.
+  /// Refuses a component, and lists those of its owner.
   [[noreturn]] void refuse(const int* joint, const int* marker, const int* force,
                            std::string_view component, std::size_t place) const {
     std::string sentence;

@@ -1,4 +1,4 @@
-// Why a formula cannot be that of a force, an event or a loop.
+// Why a formula is unfit for a force, an event or a loop.
 
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
@@ -61,7 +61,7 @@ std::string equation_fault(const Scene& scene, LoopKind kind, const Formula& for
                     : "takes no coordinate and no position of a marker, so that it ties nothing; "
                       "expected one of them";
   if (!of_rates) return "";
-  // Linear: no second derivative by rates is anything but the number zero.
+  // Linear in rates: all second derivatives are the number zero.
   const Expression second = formula.expression.with_second_derivatives(rates);
   std::size_t at = 1 + rates.size();
   for (std::size_t v = 0; v < rates.size(); ++v)

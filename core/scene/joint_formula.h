@@ -1,11 +1,10 @@
 #pragma once
-// What a scene knows of a user joint: its number of coordinates, their units and its
-// pose. The recursions take derivatives of the same formula (core/kernel/user_motion.h).
+// A user joint in a scene: number and units of its coordinates, and its pose. The recursions take
+// derivatives of the same formula (core/kernel/user_motion.h).
 
 namespace momenta {
 
-/// The formula of a user joint, immutable. A program makes one as a UserJoint (core/user_joint.h);
-/// no other class can derive from this one.
+/// The formula of a user joint, immutable; made as a UserJoint (core/user_joint.h).
 class JointFormula {
  public:
   virtual ~JointFormula() = default;
@@ -21,7 +20,7 @@ class JointFormula {
   virtual void pose(double t, const double* q, double* rotation, double* position) const = 0;
 
  private:
-  friend class UserFormula;  // so that the recursions know what every formula is
+  friend class UserFormula;  // the recursions cast every formula to it
   JointFormula() = default;
   JointFormula(const JointFormula&) = default;
   JointFormula& operator=(const JointFormula&) = default;

@@ -1,13 +1,13 @@
 #pragma once
-// The kinds of joints of a scene, and how many numbers each adds to the state. q and u differ in
-// size where the rates are quasi-velocities (angular velocities in body axes): there p = Eᵀ P* =
-// ∂T/∂u is not canonical, and (35) holds unchanged.
+// Kinds of joints of a scene, and their numbers of coordinates and rates. These differ where the
+// rates are quasi-velocities (angular velocities in body axes): there p = Eᵀ P* = ∂T/∂u is not
+// canonical, and (35) holds unchanged.
 //
 // A tree has fewer kinds: cylindrical, universal and planar joints, and fully driven spherical and
 // free joints, become chains of revolute and prismatic joints with massless bodies between them. So
-// E is constant in body axes for every such joint, and q, p, q̇, ṗ are those of the joint as a
-// whole. A user joint is a formula of a program (core/user_joint.h): its E varies in body axes, and
-// the formula says how many numbers it has.
+// E is constant in body axes, and q, p, q̇, ṗ are those of the whole joint. A user joint is a
+// formula of a program (core/user_joint.h), which says how many coordinates it has; its E varies in
+// body axes.
 
 #include <cstddef>
 
@@ -27,8 +27,8 @@ enum class JointKind {
   user   ///< a formula of the program: core/user_joint.h
 };
 
-/// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free. For user
-/// joints, whose size the kind does not tell, it is 0: use coordinates_of(JointSpec).
+/// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free; 0 for
+/// user joints, whose size the kind does not tell: use coordinates_of(JointSpec).
 constexpr int coordinates_of(JointKind kind) {
   switch (kind) {
     case JointKind::revolute:
@@ -51,9 +51,9 @@ constexpr int coordinates_of(JointKind kind) {
   return 0;
 }
 
-/// Size of u and p: the number of columns of the joint matrix E, eq. (13). Also how many
-/// coordinates drives can prescribe: roll, pitch, yaw for a spherical joint; x, y, z, roll, pitch,
-/// yaw for a free one.
+/// Size of u and p: the number of columns of the joint matrix E, eq. (13). Also the number of
+/// coordinates that drives can prescribe: roll, pitch, yaw for a spherical joint; x, y, z, roll,
+/// pitch, yaw for a free one.
 constexpr int rates_of(JointKind kind) {
   switch (kind) {
     case JointKind::revolute:
@@ -75,14 +75,14 @@ constexpr int rates_of(JointKind kind) {
   return 0;
 }
 
-/// How many coordinates are angles and displacements by themselves: all where q̇ = u and the joint
-/// is one of, or a chain of, revolute, prismatic and helical ones.
+/// Number of coordinates that are angles and displacements by themselves: all where q̇ = u and the
+/// joint is one, or a chain, of revolute, prismatic and helical ones.
 constexpr std::size_t scalar_coordinates_of(JointKind kind) {
   return coordinates_of(kind) == rates_of(kind) ? static_cast<std::size_t>(rates_of(kind)) : 0;
 }
 
-/// How many numbers its rotors' inertia has (JointSpec::rotor_inertia): one for each of those
-/// coordinates; of a spherical joint one for all its rates.
+/// Size of JointSpec::rotor_inertia: one number for each of those coordinates, one for all rates of
+/// a spherical joint.
 constexpr std::size_t rotors_of(JointKind kind) {
   return kind == JointKind::spherical ? 1 : scalar_coordinates_of(kind);
 }

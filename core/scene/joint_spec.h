@@ -17,10 +17,9 @@ namespace momenta {
 
 class JointFormula;  // core/scene/joint_formula.h
 
-/// A joint of the tree; its child is a body, its parent a body or "ground". It has two joint
-/// frames. The one in the parent has its origin at `origin_parent` and is turned by `rotation`; the
-/// one in the child has its origin at `origin_child` and is parallel to the child's axes. At q = 0
-/// (quaternion 1, 0, 0, 0) the two coincide.
+/// A joint of the tree; its child is a body, its parent a body or "ground". The joint frame in the
+/// parent is at `origin_parent`, turned by `rotation`; that in the child is at `origin_child`,
+/// parallel to the child's axes. At q = 0 (quaternion 1, 0, 0, 0) they coincide.
 ///
 /// q, by kind:
 ///   - revolute, helical [rad], prismatic [m]; weld: none
@@ -31,8 +30,8 @@ class JointFormula;  // core/scene/joint_formula.h
 ///     `axis` [rad]
 ///   - spherical: quaternion w x y z of the child axes in the joint frame
 ///   - free: position x y z [m] of the child point in the joint frame, then that quaternion
-///   - user: what the formula in `law` takes; the two frames need not coincide at q = 0. A file has
-///     no such kind. No springs, dampers, torques, drives or couplers on it
+///   - user: as the formula in `law` says; the two frames need not coincide at q = 0. Not in files.
+///     No springs, dampers, torques, drives or couplers on it
 ///
 /// u, by kind:
 ///   - q̇ where no quaternion is in q; weld: none
@@ -44,7 +43,7 @@ class JointFormula;  // core/scene/joint_formula.h
 /// normalised, or "x", "-x", "y", ...
 struct JointSpec {
   std::string name;                      ///< unique among joints and loops
-  JointKind kind = JointKind::revolute;  ///< which coordinates it has
+  JointKind kind = JointKind::revolute;  ///< kind, with its coordinates
   std::string parent = "ground";         ///< a body, or "ground"
   std::string child;                     ///< a body, the child of this joint alone
   Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< in parent axes [m]
@@ -54,7 +53,7 @@ struct JointSpec {
   /// Universal: the second axis, a unit vector, not parallel to `axis`; zero means
   /// perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
-  /// Planar: q1 counts along the part of this that is perpendicular to `axis`; zero means
+  /// Planar: q1 counts along the part of this perpendicular to `axis`; zero means
   /// perpendicular_to(axis). A unit vector in the joint frame, not parallel to `axis`.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   double pitch = 0;  ///< helical: displacement along `axis` per angle about it [m/rad]
@@ -64,47 +63,47 @@ struct JointSpec {
   double stiffness = 0;  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
   double rest = 0;       ///< revolute, helical [rad], prismatic [m]; else 0
   double damping = 0;    ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
-  /// Coulomb friction made smooth, −friction · u / √(u² + friction_rate²): of revolute, helical
-  /// joints [N m], prismatic ones [N]; else 0.
+  /// Coulomb friction made smooth, −friction · u / √(u² + friction_rate²), on revolute, helical [N
+  /// m] and prismatic [N] joints; else 0.
   double friction = 0;
-  double friction_rate = 0.1;  ///< rate at which it has 0.7 of its force [rad/s or m/s], > 0
-  /// Friction by the joint's own reaction: of revolute and prismatic joints that no drive moves.
+  double friction_rate = 0.1;  ///< rate at 0.7 of the full friction [rad/s or m/s], > 0
+  /// Friction by the joint's own reaction, on revolute and prismatic joints without drives.
   std::optional<BearingSpec> bearing;
   /// Inertia on each coordinate's rate, as of a motor's rotor behind its gear (gear ratio squared
-  /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Of revolute and helical
-  /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and
-  /// planar joints. Of spherical joints one number [kg m²], ½ I u·u: the same about every axis.
-  /// Empty: none. On a driven coordinate it has no effect on the motion.
+  /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Revolute and helical
+  /// joints [kg m²], prismatic ones [kg], each coordinate of cylindrical, universal and planar
+  /// joints. Spherical joints: one number [kg m²], ½ I u·u, the same about every axis. Empty: none.
+  /// No effect on the motion of a driven coordinate.
   std::vector<double> rotor_inertia;
-  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint; of a spherical one 0
-  /// and the largest angle of its turn from q = (1, 0, 0, 0), below π. Without stops they exert no
-  /// force: programs tell when they are passed.
+  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint; for a spherical one 0
+  /// and the largest angle of its turn from q = (1, 0, 0, 0), below π. Without stops no force:
+  /// programs report when limits are passed.
   std::optional<std::array<double, 2>> limits;
-  /// Stops at the limits: beyond one by x the joint is pushed back by a spring stop_stiffness
-  /// [N m/rad or N/m] and a damper stop_damping [N m s/rad or N s/m], both of which grow from 0 at
-  /// the limit to all of it at x = stop_width [rad or m], with a continuous derivative:
-  /// k x²/2w for x < w, then k (x − w/2). Of joints with limits.
+  /// Stops at the limits: beyond one by x a spring stop_stiffness [N m/rad or N/m] and a damper
+  /// stop_damping [N m s/rad or N s/m] push the joint back, both growing from 0 at the limit to
+  /// their full value at x = stop_width [rad or m], with a continuous derivative: k x²/2w for x <
+  /// w, then k (x − w/2). Needs limits.
   double stop_stiffness = 0;
-  double stop_damping = 0;   ///< of the stops, at least 0
-  double stop_width = 0.01;  ///< of the stops, w > 0
+  double stop_damping = 0;   ///< damping of the stops, at least 0
+  double stop_width = 0.01;  ///< width w of the stops, > 0
   /// Rigid stops at the limits instead: the rate after an impact is −restitution times that before,
-  /// 0 to 1. Of revolute, helical and prismatic joints with limits; no number: no such stops.
+  /// 0 to 1. For revolute, helical and prismatic joints with limits; no number: no such stops.
   std::optional<double> restitution;
   Location at;  ///< where the file has it
 };
 
-/// Size of q of a joint: by its kind, or by its law.
+/// Size of q of a joint, by its kind or its law.
 int coordinates_of(const JointSpec& joint);
 /// Size of u and p of a joint.
 int rates_of(const JointSpec& joint);
-/// Whether a rotor turns with one of its coordinates.
+/// Whether one of its coordinates has a rotor.
 bool has_rotor(const JointSpec& joint);
-/// Whether its limits push back.
+/// Whether its limits have stops.
 bool has_stops(const JointSpec& joint);
 
-/// The default direction of a joint. Of the coordinate axes, find the one nearest to `axis` (the
-/// first of equally near ones), take the next in the order x y z x, and make it perpendicular to
-/// `axis`: x for an axis along z, y for one along x, z for one along y.
+/// The default direction of a joint: of the coordinate axes the next one, in the order x y z x,
+/// after the one nearest to `axis` (the first of equally near ones), made perpendicular to `axis`:
+/// x for an axis along z, y for one along x, z for one along y.
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
 
 }  // namespace momenta

@@ -10,7 +10,7 @@
 
 namespace momenta::reading {
 
-// In the order of the enumerations. A file cannot ask for a user joint, the last kind.
+// In the order of the enumerations. User joints, the last kind, have no name in files.
 inline constexpr std::array<std::string_view, 9> joint_kinds{
     "revolute",  "prismatic", "helical", "cylindrical", "universal",
     "spherical", "planar",    "free",    "weld"};
@@ -19,7 +19,7 @@ inline constexpr std::array<std::string_view, 16> loop_kinds{
     "distance", "universal", "cylindrical", "planar",   "coupler",
     "slot",     "cam",       "rack",        "equation", "velocity-equation",
     "rolling"};
-// Of slots a straight one has no curve to describe.
+// A straight slot has no curve.
 inline constexpr std::array<std::string_view, 3> function_kinds{"cubic", "monotone", "linear"};
 inline constexpr std::array<std::string_view, 3> event_directions{"both", "up", "down"};
 inline constexpr std::array<std::string_view, 3> slot_curves{"line", "circle", "spline"};
@@ -53,19 +53,18 @@ constexpr bool has_axis(LoopKind kind) {
          kind == LoopKind::cam || kind == LoopKind::rack || kind == LoopKind::rolling;
 }
 
-/// What drives prescribe, coordinate by coordinate, where all of them must be driven or none.
+/// Coordinates of drives that come all together or not at all.
 inline constexpr std::array<std::string_view, 6> pose_coordinates{"x",    "y",     "z",
                                                                   "roll", "pitch", "yaw"};
 
 /// The sine of the angle below which a second direction counts as parallel to the axis.
 inline constexpr double parallel_slack = 1e-6;
 
-/// Unit quaternions within this are normalised, or accepted; beyond it they are a mistake of the
-/// author.
+/// Unit quaternions within this are normalised, or accepted; others are mistakes of the author.
 inline constexpr double norm_slack = 1e-6;
 
-/// Of unit length to rounding: such vectors stay as they are, so that what was written by
-/// scene_text() is read back the same, bit by bit.
+/// Whether v has unit length to rounding: it is then kept, so that scene_text() is read back bit by
+/// bit.
 template <class V>
 bool is_unit(const V& v) {
   constexpr double rounding = 1e-14;

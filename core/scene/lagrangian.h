@@ -1,6 +1,6 @@
 #pragma once
-// A system without bodies: coordinates, a Lagrangian of them and of their rates, forces and
-// constraints, each a formula. Plain data, as its author wrote it.
+// A system without bodies: coordinates, a Lagrangian, forces and constraints as formulas. Plain
+// data, as its author wrote it.
 
 #include <momenta/core/scene/location.h>
 
@@ -12,28 +12,28 @@ namespace momenta {
 /// A formula as text (core/expression/expression.h).
 struct FormulaSpec {
   std::string text;  ///< empty: none
-  Location at;       ///< where the file has it: its opening quote
+  Location at;       ///< place of its opening quote in the file
 };
 
-/// d/dt ∂L/∂q̇ − ∂L/∂q = Q − Φ_qᵀλ,  Φ(q, t) = 0. Formulas name the coordinates, their rates as
-/// `x.dot`, the time `t` and the parameters of the scene.
+/// d/dt ∂L/∂q̇ − ∂L/∂q = Q − Φ_qᵀλ, Φ(q, t) = 0. Formulas name coordinates, rates `x.dot`, the time
+/// `t` and the scene's parameters.
 struct LagrangianSpec {
-  /// A coordinate and its start, or a first guess where there are constraints.
+  /// A coordinate and its start, a first guess where there are constraints.
   struct Coordinate {
-    std::string name;     ///< as formulas have it
+    std::string name;     ///< name in formulas
     std::string unit;     ///< for columns and axes; any text
     double position = 0;  ///< at the start [unit]
     double velocity = 0;  ///< at the start [unit/s]
   };
-  /// A generalised force: its power is Q times the rate of its coordinate.
+  /// A generalised force: Q times the rate of its coordinate is its power.
   struct Force {
-    std::string coordinate;  ///< on which it acts
+    std::string coordinate;  ///< coordinate on which it acts
     FormulaSpec value;       ///< Q of q, q̇, t [J/unit]
     Location at;             ///< where the file has it
   };
   /// A holonomic constraint Φ(q, t) = 0.
   struct Constraint {
-    std::string name;      ///< of its multipliers
+    std::string name;      ///< name of its multipliers
     FormulaSpec equation;  ///< Φ
     bool angle = false;    ///< Φ is an angle [rad], else a length [m]
     Location at;           ///< where the file has it

@@ -3,7 +3,7 @@
 
 namespace momenta {
 
-/// A place in a file; line 0 means that the thing did not come from a file.
+/// A place in a file; line 0: the thing is not from a file.
 struct Location {
   int line = 0;    ///< from 1
   int column = 0;  ///< from 1, in characters; 0: not known

@@ -1,5 +1,5 @@
 #pragma once
-// A loop of a scene: what closes it, or the equation it is.
+// A loop of a scene: a joint that closes it, or an equation.
 
 #include <momenta/core/scene/curve_spec.h>
 #include <momenta/core/scene/location.h>
@@ -31,8 +31,8 @@ enum class LoopKind {
   rolling             ///< 3: contact, and two of the slip, which are nonholonomic
 };
 
-/// A joint that closes a loop. It has the keys of a joint, but no coordinates and no forces along
-/// them. Its child is a body, its parent another body or "ground".
+/// A joint that closes a loop. It has the keys of a joint, but no coordinates or forces. Its child
+/// is a body, its parent another body or "ground".
 ///   - `point` and `spherical` are the same three equations
 ///   - `distance` keeps |origin_parent − origin_child| = length
 ///   - `universal` keeps the points together and `axis`, held by the parent, at its angle to
@@ -50,7 +50,7 @@ enum class LoopKind {
 ///     child about `axis` is `offset` − displacement / radius. The distance from the line is not
 ///     held
 ///   - `equation`: the formula `equation` is zero, of joint coordinates, positions of markers and t
-///     (core/scene/formula.h); it ties what its names stand for, and has no bodies of its own
+///     (core/scene/formula.h). It has no bodies of its own
 ///   - `velocity_equation`: the formula `equation` is zero, linear in rates of joint coordinates
 ///     and velocities of markers, with coefficients of coordinates, positions of markers and t
 ///   - `rolling`: the wheel of the child rolls without slipping on the plane of the parent through
@@ -67,23 +67,23 @@ struct LoopSpec {
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< loop frame in parent axes
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the loop frame
-  /// Universal: as for a joint; zero means perpendicular_to(axis).
+  /// Universal: as in JointSpec; zero means perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
-  /// Planar: as for a joint, used where drives prescribe coordinates; rack: its line; zero means
+  /// Planar: as in JointSpec, for driven coordinates; rack: its line; zero means
   /// perpendicular_to(axis).
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double length = 0;  ///< distance [m]; no effect where a drive prescribes it
-  /// Coupler: joints whose rates are their q̇, driven or not; no coordinate occurs twice.
+  double length = 0;  ///< distance [m]; no effect where driven
+  /// Coupler: joints with u = q̇, driven or not; no coordinate occurs twice.
   std::vector<std::string> joints;
-  std::vector<int> coordinates;  ///< counted as for a drive, one for each joint; empty: all 0
+  std::vector<int> coordinates;  ///< counted as in DriveSpec, one for each joint; empty: all 0
   std::vector<double> ratios;    ///< [1, rad/m or m/rad], not zero, one for each joint
-  /// Of the second to fourth power of the last joint's coordinate, at most three; where one is not
-  /// zero that joint's ratio may be.
+  /// Coefficients of x² to x⁴, x the coordinate of the last joint; with one that is not zero, that
+  /// joint's ratio may be 0.
   std::vector<double> powers;
-  double offset = 0;        ///< [rad or m]; no effect where a drive prescribes it
+  double offset = 0;        ///< [rad or m]; no effect where driven
   CurveSpec curve;          ///< slot: circle or spline, or none; cam: outline of the parent
   CurveSpec child_curve;    ///< cam: outline of the child
-  double radius = 0;        ///< rack, rolling: the largest [m], > 0
+  double radius = 0;        ///< rack: radius; rolling: largest radius [m], > 0
   double crown_radius = 0;  ///< rolling [m], 0 to `radius`
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< rolling: unit vector in the loop frame
   std::string equation;  ///< equation, velocity equation: a formula, without corners
@@ -93,17 +93,17 @@ struct LoopSpec {
 /// Whether a coupler is not linear.
 bool has_powers(const LoopSpec& loop);
 
-/// Whether a loop ties its parent and its child, and not what coordinates or formulas name.
+/// Whether a loop ties its parent and its child, not coordinates or names in formulas.
 bool ties_bodies(const LoopSpec& loop);
 
-/// Whether a loop is a formula: of positions, or of velocities.
+/// Whether a loop is a formula, of positions or of velocities.
 bool has_equation(const LoopSpec& loop);
 
-/// Whether a loop is a higher pair of curves: a slot that is not straight, a cam, a rack.
+/// Whether a loop is a higher pair of curves: a curved slot, a cam, a rack.
 bool has_curves(const LoopSpec& loop);
 
-/// How many coordinates of a loop drives can prescribe: the coordinates of a joint of the same
-/// kind, the length of a distance, the offset of a coupler, the displacement in a straight slot.
+/// Number of coordinates of a loop that drives can prescribe: those of a joint of the same kind,
+/// the length of a distance, the offset of a coupler, the displacement in a straight slot.
 constexpr int driven_coordinates_of(LoopKind kind) {
   switch (kind) {
     case LoopKind::revolute:

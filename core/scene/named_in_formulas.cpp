@@ -1,5 +1,5 @@
-// What the formulas of a scene's forces, equations and events name: what may neither go nor change
-// its meaning where the scene is written in another way.
+// Things named in the formulas of a scene's forces, equations and events: they must keep their
+// meaning where the scene is written in another way.
 
 #include <momenta/core/scene/formula.h>
 
@@ -12,7 +12,7 @@ NamedInFormulas::NamedInFormulas(const Scene& scene) {
       std::none_of(scene.loops.begin(), scene.loops.end(), has_equation) && scene.events.empty())
     return;
   const FormulaReader reader(scene);
-  // `own`: the force whose formula it is.
+  // `own`: the force with this formula.
   const auto note = [&](const Formula& formula, const ForceSpec* own) {
     for (const Signal& s : formula.signals) {
       const auto which = static_cast<std::size_t>(s.which);

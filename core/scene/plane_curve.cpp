@@ -6,8 +6,9 @@
 namespace momenta {
 namespace {
 
-constexpr double flat_slack = 1e-9;       // points off the plane, of the largest coordinate
-constexpr double direction_slack = 1e-6;  // directions off the plane, and of unit length
+constexpr double flat_slack =
+    1e-9;  // distance of points from the plane, over their largest coordinate
+constexpr double direction_slack = 1e-6;  // for directions: off the plane, and off unit length
 constexpr std::size_t samples_of_turn = 96, samples_of_chord = 8;
 
 std::string spline_fault(const CurveSpec& spec, const Eigen::Vector3d& axis) {
@@ -70,7 +71,7 @@ PlaneCurve::PlaneCurve(const CurveSpec& spec, const Eigen::Vector3d& e1,
   if (spec.kind == "flat") {
     const auto n = in_plane(spec.direction);
     const double norm = std::hypot(n[0], n[1]);
-    e_ = {n[1] / norm, -n[0] / norm};  // the normal to the left
+    e_ = {n[1] / norm, -n[0] / norm};  // the normal is to the left
     return;
   }
   if (spec.kind == "spline") {

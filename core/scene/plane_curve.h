@@ -18,8 +18,8 @@
 
 namespace momenta {
 
-/// Why a curve is none about a point in the plane across `axis` (a unit vector), in words; empty
-/// where it is one.
+/// Why a CurveSpec is no curve about a point in the plane across `axis` (a unit vector), in words;
+/// empty: it is one.
 std::string curve_fault(const CurveSpec& spec, const Eigen::Vector3d& axis);
 
 /// p, p' and p'' at one parameter.
@@ -36,19 +36,19 @@ class PlaneCurve {
   PlaneCurve(const CurveSpec& spec, const Eigen::Vector3d& e1, const Eigen::Vector3d& e2);
 
   bool is_straight() const { return kind_ == Kind::line; }
-  /// Of its parameter; 0: not closed.
+  /// Period in its parameter; 0: not closed.
   double period() const { return period_; }
-  /// Parameters from one to the next of which the curve turns little, ascending: of a spline from
-  /// end to end. None of a line.
+  /// Ascending parameters between which the curve turns little; for a spline from end to end, none
+  /// for a line.
   const std::vector<double>& samples() const { return samples_; }
-  /// Where the curve is there.
+  /// Points of the curve at the samples.
   const std::vector<PlaneCurvePoint<double>>& sampled() const { return sampled_; }
-  /// Largest distance of its samples from the origin [m]; of a line 0.
+  /// Largest distance of its samples from the origin [m]; 0 for a line.
   double reach() const { return reach_; }
-  /// +1: what it bounds is to the right of p', −1: to the left.
+  /// +1: the bounded side is to the right of p', −1: to the left.
   double outward() const { return outward_; }
 
-  /// No allocation, O(log points).
+  /// The point at s. No allocation, O(log points).
   template <class S>
   PlaneCurvePoint<S> at(const S& s) const {
     using std::cos, std::sin;

@@ -8,9 +8,9 @@
 namespace momenta {
 namespace {
 
-constexpr double same = 1e-6;  // of a rod's length
+constexpr double same = 1e-6;  // relative to a rod's length
 
-/// How far along its rod each pin of a body is [m].
+/// Places of each body's pins along its rod [m].
 class Pins {
  public:
   explicit Pins(const Scene& scene) {

@@ -55,7 +55,7 @@ bool has_rotor(const JointSpec& joint) {
 }
 
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis) {
-  constexpr double tie = 1e-9;  // so that rounding does not choose
+  constexpr double tie = 1e-9;  // axes this near count as equally near, whatever rounding
   const Eigen::Vector3d a = axis.normalized();
   int nearest = 0;
   for (int i = 1; i < 3; ++i)
@@ -70,7 +70,7 @@ std::string name_of(const EventSpec& event, std::size_t place) {
 
 namespace {
 
-/// By body, the ground too, the diagonal of the box around what is on it: O(points).
+/// Diagonal, by body and for the ground, of the box around its points: O(points).
 std::map<std::string, double> diagonals(const Scene& scene) {
   struct Points {
     Eigen::Vector3d low, high;

@@ -1,6 +1,6 @@
 #pragma once
 // A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
-// in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
+// in rad. Filled by readers (read_scene) or by hand.
 
 #include <momenta/core/scene/body_spec.h>
 #include <momenta/core/scene/drive_spec.h>
@@ -35,33 +35,32 @@ struct MarkerSpec {
   Location at;                                      ///< where the file has it
 };
 
-/// A moment of a run to be told: where a formula passes zero.
+/// An event of a run: a formula passes zero.
 struct EventSpec {
   std::string name;  ///< or empty: "event 1", by its place among the events
-  /// A number of the mechanism (core/scene/formula.h), or of a Lagrangian's names; no comparison.
+  /// A number of the mechanism (core/scene/formula.h) or of a Lagrangian; no comparison.
   FormulaSpec when;
   std::string direction = "both";  ///< up: from below zero to above it; down; both
   bool stop = false;               ///< the run ends there
   Location at;                     ///< where the file has it
 };
-/// Its name, or "event 1" by its place.
+/// The name of an event, or "event 1" by its place.
 std::string name_of(const EventSpec& event, std::size_t place);
 
-/// A number with a name, of which the file made others; here its value.
+/// A named number from which the file computes others; here its value.
 struct ParameterSpec {
-  std::string name;   ///< as formulas have it
-  double value = 0;   ///< in the units of what is made of it
+  std::string name;   ///< name in formulas
+  double value = 0;   ///< value, in the units of its use
   bool used = false;  ///< whether a formula of the scene takes it
 };
 
-/// The defaults of a run, for options that the command line does not give; also for `momenta
-/// drift`.
+/// Defaults of a run, for options not on the command line; also for `momenta drift`.
 struct RunDefaults {
   double end_time = 10;        ///< [s]
   std::optional<double> step;  ///< fixed-step integrators [s]
   std::optional<double> leak;  ///< gauge leak κ [1/s]
   int samples = 1000;          ///< output intervals
-  bool project = false;  ///< correct positions after each step: scenes that pass singular poses
+  bool project = false;  ///< correct positions after each step: for scenes that pass singular poses
 };
 
 /// A mechanism as its author wrote it. read_scene() returns it; OpenChain and Mechanism take it.
@@ -76,31 +75,30 @@ struct Scene {
   std::vector<LoopSpec> loops;                        ///< empty: an open chain
   std::vector<DriveSpec> drives;                      ///< prescribed motion
   std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints
-  std::vector<FunctionSpec> functions;    ///< what formulas may call
-  std::vector<MarkerSpec> markers;        ///< points to be reported
-  std::vector<EventSpec> events;          ///< moments of runs to be told
-  std::vector<VisualSpec> visuals;        ///< solids to be drawn; no effect on motion
+  std::vector<FunctionSpec> functions;    ///< functions in formulas
+  std::vector<MarkerSpec> markers;        ///< points that are reported
+  std::vector<EventSpec> events;          ///< moments of runs that are reported
+  std::vector<VisualSpec> visuals;        ///< solids that are drawn; no effect on motion
   std::vector<std::string> held;          ///< [assembly] hold: joints whose q and u assembly keeps
-  Location held_at;                       ///< where the file has that list
+  Location held_at;                       ///< place of that list in the file
   RunDefaults run;                        ///< [run] end, step, leak, samples
   std::vector<ParameterSpec> parameters;  ///< [parameters]; for reports: numbers here are values
-  /// What the reader of another format left out or changed: one sentence per kind.
+  /// Things the reader of another format left out or changed: one sentence per kind.
   std::vector<std::string> remarks;
 
-  /// The prefix of a message about a place in this scene: "file:line:column: ", without line and
-  /// column for a thing that did not come from a file, and "scene: " where the scene did not come
-  /// from one.
+  /// Prefix of a message about a place in this scene: "file:line:column: ", without line and column
+  /// for things not from a file, "scene: " for a scene not from a file.
   std::string where(Location at) const;
 };
 
-/// The length of the scene [m], the unit in which gaps of loops are judged. For each body and for
-/// the ground take the box, along its axes, around its centre of mass and its points of joints,
-/// loops, springs, wrenches and markers. The length is the largest diagonal of these boxes, or the
-/// largest `length` of a loop if that is more; 1 when all of these are zero.
+/// The length of the scene [m], the unit for gaps of loops. Each body and the ground have a box,
+/// along their axes, around the centre of mass and points of joints, loops, springs, wrenches and
+/// markers: the largest diagonal, or the largest `length` of a loop if that is more; 1 when all are
+/// zero.
 double length_of(const Scene& scene);
 
-/// The largest diagonal of a body's box [m], the ground left out: how far what moves swings. The
-/// length of the scene where all of these are zero.
+/// The largest diagonal of a body's box [m], without the ground: how far bodies swing. The length
+/// of the scene where all are zero.
 double length_of_bodies(const Scene& scene);
 
 }  // namespace momenta

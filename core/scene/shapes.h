@@ -7,7 +7,7 @@
 
 namespace momenta::reading {
 
-/// Centre of mass [m], body axes: half way along a rod, the body origin for the others.
+/// Centre of mass [m], body axes: half way along a rod, else the body origin.
 Eigen::Vector3d centre_of(const Shape& shape);
 
 /// Inertia about the centre of mass [kg m²], body axes, with a the unit axis:
@@ -18,11 +18,11 @@ Eigen::Vector3d centre_of(const Shape& shape);
 ///   point     0
 Eigen::Matrix3d inertia_of(const Shape& shape, double mass);
 
-/// What makes numbers no symmetric matrix, in words, or empty.
+/// Why numbers make no symmetric matrix, in words; empty: they do.
 std::string matrix_fault(const Eigen::Matrix3d& inertia);
 
-/// What makes a matrix no inertia of a rigid body, in words, or empty. The principal moments a <= b
-/// <= c must satisfy 0 <= a and c <= a + b, both within 1e-9 c.
+/// Why a matrix is no inertia of a rigid body, in words; empty: it is one. The principal moments a
+/// <= b <= c must satisfy 0 <= a and c <= a + b, both within 1e-9 c.
 std::string inertia_fault(const Eigen::Matrix3d& inertia);
 
 }  // namespace momenta::reading

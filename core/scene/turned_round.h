@@ -1,5 +1,5 @@
 #pragma once
-// Joints and loops seen from their child: parent and child change places, the motion they allow
+// Joints and loops seen from their child: parent and child change places, the relative motion
 // stays. The new frame has the axes of the old parent; there the old frame is `rotation`.
 
 #include <momenta/core/scene/joint_spec.h>
@@ -10,14 +10,14 @@
 
 namespace momenta {
 
-/// Whether q and u of a joint mean the same, but for their order, once it is turned round.
+/// Whether q and u of a joint mean the same, up to order, once it is turned round.
 inline bool keeps_coordinates(JointKind kind) {
   return kind == JointKind::revolute || kind == JointKind::prismatic ||
          kind == JointKind::helical || kind == JointKind::cylindrical ||
          kind == JointKind::universal || kind == JointKind::weld;
 }
 
-/// Whether a loop has a child and a parent that can change places.
+/// Whether parent and child of a loop can change places.
 inline bool can_turn_round(const LoopSpec& loop) {
   switch (loop.kind) {
     case LoopKind::point:
@@ -42,7 +42,7 @@ inline bool can_turn_round(const LoopSpec& loop) {
   return false;
 }
 
-/// Bodies, points and axes of a joint or a loop turned round.
+/// Exchanges bodies, points and axes of a joint or a loop.
 template <class Spec>
 Spec with_ends_exchanged(const Spec& spec, bool universal, bool planar) {
   Spec t = spec;
@@ -60,9 +60,8 @@ Spec with_ends_exchanged(const Spec& spec, bool universal, bool planar) {
   return t;
 }
 
-/// The joint seen from its child: the same q and u of kinds with one axis and of welds; of a
-/// universal joint its two coordinates have changed places. Of others q and u are others: theirs
-/// are left empty.
+/// The joint seen from its child: same q and u for kinds with one axis and for welds; the
+/// coordinates of a universal joint change places. Other kinds have other q and u, left empty.
 inline JointSpec turned_round(const JointSpec& joint) {
   const bool universal = joint.kind == JointKind::universal;
   JointSpec t = with_ends_exchanged(joint, universal, joint.kind == JointKind::planar);

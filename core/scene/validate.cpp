@@ -42,7 +42,7 @@ void check_bodies(const Scene& scene) {
   }
 }
 
-/// What joints and loops share: bodies, frames, axis.
+/// Checks common to joints and loops: bodies, frames, axis.
 template <class Edge>
 void check_edge(const Scene& scene, const Census& census, const Edge& edge,
                 const std::string& who) {
@@ -58,7 +58,7 @@ void check_edge(const Scene& scene, const Census& census, const Edge& edge,
           scene, edge.at, who, "axis must be a unit vector within 1e-6");
 }
 
-/// `second` may be zero: not given. Sentences open with `what`.
+/// Checks a second axis or direction; zero: not given. `what` opens the sentences.
 template <class Edge, class Kind>
 void check_second_direction(const Scene& scene, const Edge& joint, const Eigen::Vector3d& second,
                             Kind owner, const std::string& what) {
@@ -76,7 +76,7 @@ void check_second_direction(const Scene& scene, const Edge& joint, const Eigen::
                      " is parallel to axis, expected another direction");
 }
 
-/// The law of a user joint, which no other joint has.
+/// Checks the law of a user joint; no other joint has one.
 void check_law(const Scene& scene, const JointSpec& joint, const std::string& who) {
   if (joint.kind != JointKind::user)
     return require(!joint.law, scene, joint.at, who, "law is for user joints only");
@@ -86,7 +86,7 @@ void check_law(const Scene& scene, const JointSpec& joint, const std::string& wh
           ("law has " + std::to_string(n) + " coordinates, expected 1 to 6").c_str());
 }
 
-/// R Rᵀ = 1 and det R > 0 at the start, t = 0. @pre position is finite and of its size
+/// Checks R Rᵀ = 1 and det R > 0 at the start, t = 0. @pre position is finite and of its size
 void check_pose(const Scene& scene, const JointSpec& joint, const std::string& who) {
   constexpr double slack = 1e-10;
   double q[6]{};
@@ -101,7 +101,7 @@ void check_pose(const Scene& scene, const JointSpec& joint, const std::string& w
           "law gives a matrix at the start that is no rotation within 1e-10");
 }
 
-/// Beyond a number of turns an angle is rounded to more than loops close to.
+/// Refuses angles of so many turns that rounding exceeds the gaps to which loops close.
 void check_angles(const Scene& scene, const JointSpec& joint, const std::string& who) {
   constexpr double largest = 1e9;  // [rad], rounded to 1e-7
   const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::helical ||
@@ -205,7 +205,7 @@ void check_joints(const Scene& scene, const Census& census) {
   }
 }
 
-/// Curves of slots and cams, radius and offset of a rack; no other loop has any.
+/// Checks curves of slots and cams, radius and offset of a rack; no other loop has any.
 void check_curves(const Scene& scene, const LoopSpec& loop, const std::string& who) {
   const auto check = [&](const CurveSpec& curve, bool of_this_kind, const std::string& what) {
     require(of_this_kind || curve.kind.empty(), scene, loop.at, who,

@@ -1,6 +1,6 @@
 #pragma once
-// The checks of validate() which look at the scene as a whole: its names, its tree, and what ties
-// drives and couplers to joints and loops.
+// Checks of validate() that look at the whole scene: names, tree, and ties of drives and couplers
+// to joints and loops.
 
 #include <momenta/core/scene/scene.h>
 
@@ -11,32 +11,30 @@
 
 namespace momenta::reading {
 
-/// `condition` or SceneError "<place><who>: <sentence>".
+/// Throws SceneError "<place><who>: <sentence>" unless `condition` holds.
 inline void require(bool condition, const Scene& scene, Location at, const std::string& who,
                     const char* sentence) {
   if (!condition) throw SceneError(scene.where(at) + who + ": " + sentence);
 }
 
-/// Who is called what. Construction checks the names themselves: none empty, none twice among
-/// bodies, among joints and loops together, among markers, functions, named forces, named events;
-/// none with control characters; no body called "ground".
+/// All names of a scene. Construction checks them: none empty, none twice among bodies, joints with
+/// loops, markers, functions, named forces, named events; no control characters; no body "ground".
 class Census {
  public:
   explicit Census(const Scene& scene);
 
-  /// `name` is a body, or "ground" where that is allowed; else SceneError "<place><who>: <key> is
-  /// ...".
+  /// Requires a body, or "ground" where allowed; else SceneError "<place><who>: <key> is ...".
   void require_body(const std::string& name, bool or_ground, Location at, const std::string& who,
                     const std::string& key) const;
 
-  /// `name` is a joint of the tree.
+  /// Requires a joint of the tree.
   const JointSpec& require_joint(const std::string& name, Location at,
                                  const std::string& who) const;
 
-  /// `name` is a loop.
+  /// Requires a loop.
   const LoopSpec& require_loop(const std::string& name, Location at, const std::string& who) const;
 
-  /// `name` is a joint of one coordinate: revolute, prismatic or helical.
+  /// Requires a joint of one coordinate: revolute, prismatic or helical.
   void require_one_coordinate(const std::string& name, Location at, const std::string& who) const;
 
  private:
@@ -46,44 +44,43 @@ class Census {
   std::map<std::string, const LoopSpec*, std::less<>> loops_;
 };
 
-/// The drive of a coordinate of a joint or loop, which is none of a loop's origin; or null.
-/// O(drives)
+/// The drive of a coordinate of a joint or loop, not of a loop's origin; or null. O(drives)
 const DriveSpec* drive_of(const Scene& scene, std::string DriveSpec::*owner,
                           const std::string& name, int coordinate);
 
-/// Joints known, as many coordinates and ratios, none a part of a quaternion, none twice. Returns
-/// whether all are driven.
+/// Checks joints known, as many coordinates and ratios, none a part of a quaternion, none twice.
+/// Returns whether all are driven.
 bool check_coordinates(const Scene& scene, const Census& census, const LoopSpec& coupler,
                        const std::string& who);
 bool check_coordinates(const Scene& scene, const Census& census, const ForceSpec& spring,
                        const std::string& who);
 
-/// check_coordinates(); finite numbers, not all driven.
+/// check_coordinates(); numbers finite, not all driven.
 void check_coupler(const Scene& scene, const Census& census, const LoopSpec& loop);
 
-/// Joints, loops and coordinates known, none driven twice, laws without fault, spherical and free
-/// joints and spherical loops driven as a whole, lengths positive at the start.
+/// Checks joints, loops and coordinates known, none driven twice, laws without fault, spherical and
+/// free joints and spherical loops driven as a whole, lengths positive at the start.
 void check_drives(const Scene& scene, const Census& census);
 
-/// Bodies and joints of forces known, numbers finite.
+/// Checks bodies and joints of forces known, numbers finite.
 void check_forces(const Scene& scene, const Census& census);
 
-/// Functions have names that formulas can take, and points of a spline.
+/// Checks that functions have names usable in formulas, and points of a spline.
 void check_functions(const Scene& scene);
 
-/// What formulas of forces stand in place of, and what they name. @pre the scene is valid without
-/// them
+/// Checks formulas of forces, equations and events, and the names in them. @pre the scene is valid
+/// without them
 void check_formulas(const Scene& scene);
 
-/// Every body is the child of exactly one joint and no joints form a cycle. @pre the names are
-/// known and unique
+/// Checks that every body is the child of exactly one joint and no joints form a cycle. @pre names
+/// are known and unique
 void check_tree(const Scene& scene);
 
-/// Of a scene with a Lagrangian: no bodies beside it, names that formulas can take, L or T, forces
+/// Checks a scene with a Lagrangian: no bodies beside it, names usable in formulas, L or T, forces
 /// on coordinates, constraints with names and equations.
 void check_lagrangian(const Scene& scene);
 
-/// Limits and stops of a joint or of a force along a length. @throws SceneError
+/// Checks limits and stops of a joint or of a force along a length. @throws SceneError
 template <class Spec>
 void check_limits(const Scene& scene, const Spec& s, const std::string& who) {
   require(!s.limits || (std::isfinite((*s.limits)[0]) && std::isfinite((*s.limits)[1]) &&

@@ -11,7 +11,7 @@ namespace momenta::reading {
 /// with "...".
 std::string in_quotes(std::string_view name);
 
-/// "'a', 'b'"; of more than `most` names the first, and how many more there are.
+/// "'a', 'b'"; beyond `most` names only how many more there are.
 std::string all_in_quotes(std::span<const std::string> names, std::size_t most = std::string::npos);
 
 /// The same text with control characters and bytes that are not UTF-8 written \xNN, uncut and
@@ -24,9 +24,8 @@ std::string listed(std::span<const std::string_view> names);
 /// The shortest digits that read back as the same number.
 std::string digits(double number);
 
-/// "; did you mean 'name'?" for the known name at Levenshtein distance <= 2 from `word`, the
-/// nearest one; empty when there is none, and when a name so short has nothing in common with the
-/// word. Cost O(names × length).
+/// "; did you mean 'name'?" for the known name nearest to `word`, at most two edits (edits.h) and
+/// fewer than its letters away; else empty. Cost O(names × length).
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);
 
 }  // namespace momenta::reading

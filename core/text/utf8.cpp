@@ -15,7 +15,7 @@ std::size_t utf8_length(std::string_view text) {
   if (size > text.size()) return 0;
   for (std::size_t i = 1; i < size; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Too long for what it says, half of a pair, or beyond the last character.
+  // Overlong form, half of a surrogate pair, or beyond the last character.
   if (size > 2) {
     const unsigned second = byte(1);
     if ((byte(0) == 0xe0 && second < 0xa0) || (byte(0) == 0xed && second > 0x9f) ||

@@ -7,9 +7,9 @@
 
 namespace momenta::reading {
 
-/// Bytes of the character that `text` begins with; 0: none does, or it is empty.
+/// Bytes of the character at the start of `text`; 0: it is empty or no UTF-8.
 std::size_t utf8_length(std::string_view text);
-/// Where the first byte stands that is no UTF-8; npos: none.
+/// Place of the first byte that is no UTF-8; npos: none.
 std::size_t first_not_utf8(std::string_view text);
 /// The same text with bytes that are not UTF-8 written \xNN.
 std::string as_utf8(std::string_view text);

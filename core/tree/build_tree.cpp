@@ -9,8 +9,8 @@ namespace {
 
 /// A rotation that takes z to `axis` a: with z × a = (−a_y, a_x, 0) = k,
 ///   R = 1 + k~ + k~² / (1 + a_z).
-/// Where a_z < 0 the sum 1 + a_z cancels: there the half turn about x is taken out first. The
-/// identity when the axis is z already, so that planar scenes keep clean numbers.
+/// Where a_z < 0 the sum 1 + a_z cancels: there a half turn about x is taken out first. The
+/// identity for z, so that planar scenes keep clean numbers.
 Eigen::Matrix3d frame_with_z(const Eigen::Vector3d& axis) {
   Eigen::Vector3d a = axis.normalized();
   const bool flipped = a.z() < 0;
@@ -29,15 +29,15 @@ Eigen::Isometry3d isometry(const Eigen::Matrix3d& rotation, const Eigen::Vector3
   return t;
 }
 
-/// One joint of the tree: a joint of the scene, or one of the chain that stands for it.
+/// One joint of the tree: a joint of the scene, or one of a chain in its place.
 struct Part {
   JointKind kind;
   int coordinate = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame with all parts at zero
 };
 
-/// The chain of a joint. `driven`: by drives in all its coordinates, so that a spherical or free
-/// joint needs no quaternion.
+/// The chain of a joint. `driven`: all its coordinates, so that a spherical or free joint needs no
+/// quaternion.
 std::vector<Part> parts_of(const JointSpec& joint, bool driven) {
   using Kind = JointKind;
   const Eigen::Vector3d axis = joint.axis.normalized();
@@ -221,7 +221,7 @@ class TreeBuilder {
     return parent;
   }
 
-  /// A driven joint moves as it is told; a force along it would change nothing but the drive.
+  /// A force along a driven joint would change nothing but the drive.
   void refuse_forces(const JointSpec& joint) const {
     bool forced = joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 ||
                   joint.bearing || has_stops(joint);

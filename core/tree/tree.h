@@ -1,7 +1,7 @@
 #pragma once
 // The tree of a scene: bodies in depth-first order (a parent before its children, each subtree
-// contiguous), joints with their places in q and u, everything in SI units. It does not depend on
-// the algebra; immutable once built.
+// contiguous), joints with their places in q and u, everything in SI units. Independent of the
+// algebra; immutable.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/scene.h>
@@ -15,76 +15,72 @@ namespace momenta {
 
 /// Bodies, joints and drives in the order of the sweeps, with the layout of q, u and p.
 struct Tree {
-  /// A body and the joint that carries it. Body frame: its origin is at the joint, on the joint's
-  /// axis; its z is along the axis of a revolute, prismatic or helical joint; for other joints it
-  /// has the axes of the scene's body.
+  /// A body and the joint that carries it. Body frame: origin on the joint's axis; z along the axis
+  /// of a revolute, prismatic or helical joint, else the axes of the scene's body.
   ///
-  /// A joint of the scene may become a chain of `parts` such joints, each the child of the one
-  /// before, with consecutive indices. The last part carries the scene's body; the parts before it
-  /// carry bodies without name, mass or extent, whose scene axes are the joint axes of the part.
+  /// A joint of the scene may become a chain of `parts` joints with consecutive indices. The last
+  /// part carries the scene's body; those before carry bodies without name, mass or extent, whose
+  /// scene axes are the joint axes of the part.
   struct Body {
-    std::string name;    ///< of the scene's body; empty for all but the last part
-    std::string joint;   ///< of the scene: the joint that carries it
-    int part = 0;        ///< this is part 0, 1, … of its joint
-    int parts = 1;       ///< of how many parts
-    int coordinate = 0;  ///< which coordinate of its joint a part moves; 0 with quaternions
+    std::string name;    ///< the scene's body; empty for all but the last part
+    std::string joint;   ///< the scene's joint that carries it
+    int part = 0;        ///< place of this part in its joint: 0, 1, …
+    int parts = 1;       ///< number of parts of that joint
+    int coordinate = 0;  ///< coordinate of its joint that the part moves; 0 with quaternions
     int parent = -1;     ///< −1: ground
-    JointKind kind = JointKind::revolute;  ///< of this part
+    JointKind kind = JointKind::revolute;  ///< kind of this part
     int drive = -1;  ///< index into drives; then q and u of the joint are prescribed, nq = nv = 0
-    int q = 0;       ///< place of its coordinates in q
-    int nq = 0;      ///< how many
-    int u = 0;       ///< place of its rates in u and p
-    int nv = 0;      ///< how many
+    int q = 0;       ///< first of its coordinates in q
+    int nq = 0;      ///< number of its coordinates
+    int u = 0;       ///< first of its rates in u and p
+    int nv = 0;      ///< number of its rates
     Eigen::Isometry3d placement;  ///< body frame at joint position zero, in the parent's body frame
     Eigen::Isometry3d scene_axes;  ///< the scene's body frame in this body frame
     double mass = 0;               ///< [kg]
     Eigen::Vector3d com;           ///< in the body frame [m]
     Eigen::Matrix3d inertia;       ///< about the com, body frame [kg m²]
-    double pitch = 0;              ///< of a helical joint [m/rad]
-    double stiffness = 0;          ///< of a joint of one coordinate, as in JointSpec
-    double rest = 0;               ///< likewise
-    double damping = 0;            ///< likewise
-    double friction = 0;           ///< likewise
-    double friction_rate = 0.1;    ///< likewise
-    double least = 0;              ///< limit at which a stop begins
-    double largest = 0;            ///< likewise
+    double pitch = 0;              ///< pitch of a helical joint [m/rad]
+    double stiffness = 0;          ///< as in JointSpec, for joints of one coordinate
+    double rest = 0;               ///< as in JointSpec
+    double damping = 0;            ///< as in JointSpec
+    double friction = 0;           ///< as in JointSpec
+    double friction_rate = 0.1;    ///< as in JointSpec
+    double least = 0;              ///< lower limit, where a stop begins
+    double largest = 0;            ///< upper limit
     double stop_stiffness = 0;     ///< as in JointSpec; 0 without limits
-    double stop_damping = 0;       ///< likewise
-    double stop_width = 0.01;      ///< likewise
-    double torque = 0;             ///< constant generalised force on such a joint [N m or N]
-    double rotor = 0;              ///< inertia on its rate, a ball's three [kg m² or kg]
-    std::shared_ptr<const JointFormula> law;  ///< of a user joint
+    double stop_damping = 0;       ///< as in JointSpec
+    double stop_width = 0.01;      ///< as in JointSpec
+    double torque = 0;             ///< constant generalised force, one coordinate [N m or N]
+    double rotor = 0;              ///< inertia on its rate; on all three of a ball [kg m² or kg]
+    std::shared_ptr<const JointFormula> law;  ///< formula of a user joint
 
     /// Whether the last four of its coordinates are a unit quaternion w x y z. Then, and only then,
     /// nq ≠ nv and q̇ ≠ u.
     bool has_quaternion() const { return nq != nv; }
-    /// Whether rate i is that of a length [m/s]: slides, shifts of free bodies, and what a user
-    /// joint says; else [rad/s].
+    /// Whether rate i is that of a length [m/s]: slides, shifts of free bodies, lengths of user
+    /// joints; else [rad/s].
     bool is_length(int i) const;
   };
 
-  std::string name;               ///< of the scene
+  std::string name;               ///< name of the scene
   std::vector<Body> bodies;       ///< a parent before its children, each subtree contiguous
-  std::vector<MotionLaw> drives;  ///< of joints, in the order of the scene
+  std::vector<MotionLaw> drives;  ///< laws of driven joints, in the order of the scene
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   int nq = 0;                                         ///< size of q
   int nv = 0;                                         ///< size of u and p
   Eigen::VectorXd q0;                                 ///< the scene's start (nq)
   Eigen::VectorXd u0;                                 ///< the scene's start (nv)
 
-  std::unordered_map<std::string, int> body_places;   ///< of body()
-  std::unordered_map<std::string, int> joint_places;  ///< of carried_by()
+  std::unordered_map<std::string, int> body_places;   ///< body() by name
+  std::unordered_map<std::string, int> joint_places;  ///< carried_by() by name
 
   /// Index of a body by its scene name; −1 for "ground".
   int body(const std::string& scene_name) const;
-  /// Index of the body that the joint of this name carries, by its last part; −1 for an unknown
-  /// name.
+  /// Index of the body on the last part of the joint of this name; −1 for an unknown name.
   int carried_by(const std::string& joint_name) const;
-  /// Index of the first part of the joint that body `k` belongs to; k itself where that joint has
-  /// one part.
+  /// Index of the first part of the joint of body `k`.
   int first_part(int k) const { return k - bodies[static_cast<std::size_t>(k)].part; }
-  /// Index of the part that moves one coordinate of a joint, 0, 1, …; the last part where none
-  /// does.
+  /// Index of the part that moves coordinate 0, 1, … of a joint; the last part where none does.
   /// @pre the scene has the joint. O(parts)
   int part_of(const std::string& joint_name, int coordinate) const;
   /// Whether body `k` is the last part of a joint, which carries the scene's body.
@@ -107,10 +103,10 @@ struct Tree {
   Eigen::Vector3d direction(int body, const Eigen::Vector3d& scene_direction) const;
 };
 
-/// Builds the tree. That of a Lagrangian has no bodies, only the layout and the start of its
-/// coordinates. @throws SceneError where validate() would. Cost O(bodies).
+/// Builds the tree; for a Lagrangian it has no bodies, only layout and start of its coordinates.
+/// @throws SceneError where validate() would. Cost O(bodies).
 Tree build_tree(const Scene& scene);
-/// The same of a scene that is known to be valid.
+/// The same for a scene known to be valid.
 Tree build_valid_tree(const Scene& scene);
 
 }  // namespace momenta

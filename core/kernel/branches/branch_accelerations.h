@@ -1,6 +1,6 @@
 #pragma once
-// The articulated-body recursion on branches side by side: the steps of acceleration_sweeps.h for
-// revolute joints, a branch in each lane.
+// The articulated-body recursion for revolute joints on branches side by side, a branch in each
+// lane: acceleration_sweeps.h.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/branches/branch_pack.h>
@@ -19,7 +19,7 @@ class BranchAccelerations {
         tau_(branches_.size()),
         udot_(branches_.size()) {}
 
-  /// Ω and c from those of the remaining tree, then M*, D into its slots. False as
+  /// Takes Ω and c from the remaining tree, then leaves M*, D in its slots. False as for
   /// BranchMomenta::inward.
   template <class RemainingTree, class One>
   bool inward(const double* q, const double* u, const double* tau, const OutwardMotion<One>& ground,
@@ -33,7 +33,7 @@ class BranchAccelerations {
     branches_.template leave_at_remaining_tree<false>(at_remaining_tree_, remaining_tree);
     return true;
   }
-  /// u̇ of the branches; `ground`: accelerated against gravity.
+  /// u̇ of the branches; `ground`: its acceleration against gravity.
   template <class RemainingTree, class One>
   void outward(const RemainingTree& remaining_tree, const OutwardMotion<One>& ground,
                double* udot) {
@@ -146,7 +146,7 @@ void BranchAccelerations<S>::sweep_outward() {
   }
 }
 
-/// The whole tree, one state: branches in the lanes of S, the remaining tree in One.
+/// The whole tree, one state: branches in lanes of S, the remaining tree in One.
 template <class S, class One>
 class BranchedAccelerations {
  public:
@@ -155,7 +155,7 @@ class BranchedAccelerations {
     for (const BranchGroup& group : branches.groups) groups_.emplace_back(tree, group);
   }
 
-  /// As AccelerationSweeps<Spatial, One>.
+  /// The interface of AccelerationSweeps<Spatial, One>.
   template <class In, class Out>
   bool operator()(double t, const In& q, const In& u, const In& tau, Out udot) {
     singular_joint_ = tree_->singular_joint;

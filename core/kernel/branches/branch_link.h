@@ -1,11 +1,11 @@
 #pragma once
-// The constants of one body of several mechanisms of one shape, a mechanism in each lane of S.
+// Constants of one body of several mechanisms of one shape, a mechanism in each lane of S.
 
 #include <momenta/core/kernel/link.h>
 
 namespace momenta {
 
-/// The turn whose code does for both.
+/// The turn whose code serves both.
 inline Turn common_turn(Turn a, Turn b) {
   if (a == b) return a;
   return a == Turn::tilted || b == Turn::tilted ? Turn::tilted : Turn::general;
@@ -26,7 +26,7 @@ struct BranchLink {
   Turn turn;
   bool root, first, leaf, opens, screwed, has_force, is_curved, has_rotor;
 
-  /// The numbers of one body into one lane.
+  /// Sets one lane to the numbers of a body.
   void take(const Link& l, const Model<Spatial>::Body& b, double angle, int lane) {
     const auto set = [lane](S& x, double value) { x.set_lane(lane, value); };
     set(ca, l.ca), set(sa, l.sa), set(a, l.a), set(d, l.d);

@@ -1,6 +1,6 @@
 #pragma once
-// The momentum recursion on branches side by side: the steps of momentum_sweeps.h and
-// momentum_revolutes.h for revolute joints, a branch in each lane.
+// The momentum recursion for revolute joints on branches side by side, a branch in each lane:
+// momentum_sweeps.h, momentum_revolutes.h.
 
 #include <momenta/core/kernel/branches/branch_pack.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
@@ -19,8 +19,8 @@ class BranchMomenta {
         u_(branches_.size()),
         pdot_(branches_.size()) {}
 
-  /// From (q, p) of the whole tree to M*, D, G in the remaining tree's slots. False when a joint
-  /// has no inertia to move: singular_joint(), a link of the tree.
+  /// Takes (q, p) of the whole tree, leaves M*, D, G in the remaining tree's slots. False when a
+  /// joint has no inertia: singular_joint(), a link of the tree.
   template <bool Gravity, class RemainingTree>
   bool inward(const double* q, const double* p, RemainingTree& remaining_tree) {
     branches_.place(q);
@@ -109,7 +109,7 @@ void BranchMomenta<S>::sweep_outward() {
   }
 }
 
-/// The whole tree, one state: branches in the lanes of S, the remaining tree in One.
+/// The whole tree, one state: branches in lanes of S, the remaining tree in One.
 template <class S, class One>
 class BranchedMomenta {
  public:
@@ -118,7 +118,7 @@ class BranchedMomenta {
     for (const BranchGroup& group : branches.groups) groups_.emplace_back(tree, group);
   }
 
-  /// As MomentumSweeps<Spatial, One>.
+  /// The interface of MomentumSweeps<Spatial, One>.
   template <class In, class Out>
   bool operator()(double t, const In& q, const In& p, Out u, Out pdot) {
     return tree_->model->has_gravity ? evaluate<true>(t, q, p, u, pdot)

@@ -1,6 +1,6 @@
 #pragma once
-// Branches of one shape in the lanes of S: constants, sines and cosines, and how they meet the
-// remaining tree. What both recursions on branches share.
+// Branches of one shape in the lanes of S, for both recursions: constants, sines and cosines,
+// exchange with the remaining tree.
 
 #include <momenta/core/kernel/branches/branch_link.h>
 #include <momenta/core/kernel/branches/branches.h>
@@ -8,7 +8,7 @@
 
 namespace momenta {
 
-/// What is constant of a revolute joint at the leaf of every branch: Leaf.
+/// Constants of a revolute joint at the leaf of every branch: Leaf.
 template <class S>
 struct BranchLeaf {
   S inverse;
@@ -70,7 +70,7 @@ class BranchPack {
     for (std::size_t k = 0; k < links_.size(); ++k)
       sine_cosine(q_[k] + links_[k].theta0, sine_[k], cosine_[k]);
   }
-  /// Numbers by u of the tree to numbers by place.
+  /// Numbers by u of the tree to numbers by place, and back.
   void take_rates(const double* u, std::vector<S>& to) const { gather(u, group_->u.data(), to); }
   void give_rates(const std::vector<S>& from, double* u) const {
     const auto* at = reinterpret_cast<const char*>(from.data());
@@ -80,7 +80,7 @@ class BranchPack {
       for (int lane = 0; lane < count; ++lane) __builtin_memcpy(u + index[lane], at + 8 * lane, 8);
   }
 
-  /// Adds what arrives below the roots to the slots of the remaining tree.
+  /// Adds the shares of the roots to the slots of the remaining tree.
   template <bool Gravity, class RemainingTree>
   void leave_at_remaining_tree(const Articulated<S>& articulated,
                                RemainingTree& remaining_tree) const {
@@ -111,8 +111,7 @@ class BranchPack {
                           [lane](auto& a, const S& b) { a = a + lane_of(b, lane); });
     }
   }
-  /// Motions of the bodies that carry the roots, from the remaining tree; `ground` where that is
-  /// the ground.
+  /// Motions of the roots' parents, from the remaining tree or `ground`.
   template <class RemainingTree, class One>
   void take_from_remaining_tree(const RemainingTree& remaining_tree,
                                 const OutwardMotion<One>& ground, OutwardMotion<S>& motion) const {
@@ -128,7 +127,7 @@ class BranchPack {
     }
   }
 
-  /// The link of the tree of the first lane where x is not positive.
+  /// Link, in the tree, of the first lane where x is not positive.
   int singular_joint_at(std::size_t k, const S& x) const {
     int lane = 0;
     while (lane < lanes - 1 && x.lane(lane) > 0) ++lane;
@@ -136,7 +135,7 @@ class BranchPack {
   }
 
  private:
-  /// Read from memory: a lane chosen at run time does not come out of a register.
+  /// Reads memory: a lane chosen at run time does not come out of a register.
   static MOMENTA_INLINE double lane_of(const S& x, int lane) {
     double value;
     __builtin_memcpy(&value, reinterpret_cast<const char*>(&x) + 8 * lane, 8);

@@ -1,8 +1,6 @@
 #pragma once
-// Branches: subtrees of revolute joints of one shape, as legs of a walker, arms, branches of a
-// tree. They do not know of each other, so the sweeps take several at once, one in each lane of a
-// vector register, while the remaining tree, all that is left of the tree, is swept body by body as
-// ever:
+// Branches: subtrees of revolute joints of one shape, as legs of a walker or arms. Sweeps take
+// several at once, one in each lane of a vector register; the remaining tree is swept body by body:
 //
 //   inward    branches side by side; what arrives at a root's parent is added lane by lane: (43),
 //   (44)
@@ -10,14 +8,13 @@
 //   outward   the remaining tree; Ω and gravity of every root's parent into the lanes; then the
 //   branches
 //
-// A single state has the lanes of a batch then, and the arithmetic of a branch costs nearly the
-// same for one lane as for all.
+// So a single state fills the lanes as a batch does.
 //
-// Two subtrees have one shape when their children do, pairwise, and come over a screw about the
-// parent's z or not alike. Which shapes to take is a choice between few long and many short
-// branches. In times of one revolute joint, a pack of c branches of b bodies saves
+// Two subtrees have one shape when their children do, pairwise, and either both or neither come
+// over a screw about the parent's z. The choice is between few long and many short branches. In
+// times of one revolute joint, a pack of c branches of b bodies saves
 //   (c − pack_cost)(b − leaf_discount) − c hand_over;
-// the shape whose packs save most goes first, then the next among the bodies that are left.
+// the shape whose packs save most goes first, then the next among the remaining bodies.
 
 #include <momenta/core/kernel/link.h>
 
@@ -29,7 +26,7 @@ namespace momenta {
 
 /// Up to `lanes` branches of one shape.
 struct BranchGroup {
-  /// A body of the shape; depth-first. Names as in Link, indices within the branch.
+  /// A body of the shape, depth-first. Names as in Link, indices within the branch.
   struct Place {
     int parent = -1, slot = -1;
     Turn turn = Turn::general;
@@ -37,29 +34,29 @@ struct BranchGroup {
          is_curved = false, has_rotor = false;
   };
   std::vector<Place> places;
-  int slots = 0;                          ///< within the branch
-  int lanes = 0, count = 0;               ///< of these, so many in use; the others repeat the last
-  std::vector<int> links;                 ///< of the tree, at [place · lanes + lane]
-  std::vector<int> q, u;                  ///< their coordinates and rates, likewise
+  int slots = 0;                          ///< number of slots in the branch
+  int lanes = 0, count = 0;               ///< lanes, and those in use; the others repeat the last
+  std::vector<int> links;                 ///< links of the tree, at [place · lanes + lane]
+  std::vector<int> q, u;                  ///< coordinates and rates, likewise
   std::vector<int> remaining_tree_slots;  ///< by branch: slot of the root's parent in the remaining
                                           ///< tree; −1: ground
   std::vector<char> opens;                ///< by branch: the first to reach that slot
-  bool one_parent = false;                ///< all of one body
+  bool one_parent = false;                ///< all roots are on one body
 };
 
 struct Branches {
   std::vector<BranchGroup> groups;
-  LinkTree remaining_tree;  ///< what is left; q and u as in the tree
+  LinkTree remaining_tree;  ///< q and u as in the tree
   std::vector<int> bodies;  ///< by link of the remaining tree: its index in the tree
   Model<Spatial>
-      remaining_tree_model;  ///< bodies of the remaining tree; forces between points are left out
+      remaining_tree_model;  ///< bodies of the remaining tree, without forces between points
 };
 
-/// The branches of a tree worth taking `lanes` at a time; null when there are none. O(n log n).
-/// @pre the tree's model stays where it is.
+/// The branches of a tree worth taking `lanes` at a time; null: none. O(n log n). @pre the tree's
+/// model does not move.
 std::unique_ptr<Branches> find_branches(const LinkTree& tree, int lanes);
 
-/// "4 of 6 revolute joints and 2 of 3 side by side", or nothing.
+/// "4 of 6 revolute joints and 2 of 3 side by side"; empty: no branches.
 std::string branches_in_words(const LinkTree& tree, int lanes);
 
 }  // namespace momenta

@@ -10,16 +10,15 @@
 namespace momenta {
 namespace {
 
-// In times of one revolute joint in a chain: a pack of revolute joints, what a leaf takes less, and
-// handing a branch over between lanes and remaining tree. What saves less than `least_saving` stays
-// as it is.
+// In times of one revolute joint in a chain: cost of a pack of joints, discount of a leaf, cost of
+// handing a branch over, least saving of a shape that is taken.
 constexpr double pack_cost = 1.7, leaf_discount = 0.4, hand_over = 0.4, least_saving = 1;
 
-/// Children of a body that is one of many of its shape: screwed or not, and their shapes.
+/// Children of a body that give its shape: screwed or not, and their shapes.
 using Children = std::vector<std::pair<bool, int>>;
 
 struct Shapes {
-  std::vector<int> of;                     ///< by link; −1: no branch
+  std::vector<int> of;                     ///< shape by link; −1: no branch
   std::vector<int> size;                   ///< bodies of the subtree, by link
   std::vector<std::vector<int>> children;  ///< by link, in the shape's order
   std::vector<std::vector<int>> roots;     ///< by shape, ascending
@@ -62,11 +61,11 @@ Shapes shapes_of(const LinkTree& tree) {
   return s;
 }
 
-/// Saved by `count` branches of `size` bodies in one pack.
+/// Saving by `count` branches of `size` bodies in one pack.
 double saved_by_pack(int size, int count) {
   return (count - pack_cost) * (size - leaf_discount) - hand_over * count;
 }
-/// How many of `count` branches go into packs: a last one only if that saves something.
+/// Number of `count` branches that go into packs: a last pack only if it saves something.
 int packed(int size, int count, int lanes) {
   const int last = count % lanes;
   return saved_by_pack(size, last) > 0 ? count : count - last;
@@ -76,9 +75,8 @@ double saving(int size, int count, int lanes) {
   return count / lanes * saved_by_pack(size, lanes) + (last > 0 ? saved_by_pack(size, last) : 0);
 }
 
-/// Roots of the branches to take, by shape: the most saving first, of what is left each time. A
-/// shape's saving only shrinks while others are taken, so the one that is still on top when looked
-/// at anew is the best.
+/// Roots of the branches to take, by shape, the most saving shape first at each choice. Savings
+/// only shrink while others are taken: a shape still on top when evaluated anew is the best.
 std::vector<std::vector<int>> choose(const LinkTree& tree, const Shapes& s, int lanes) {
   const std::size_t n = tree.links.size();
   std::vector<char> taken(n, 0), holds_one(n, 0);
@@ -235,7 +233,7 @@ void build_remaining_tree(const LinkTree& tree, const std::vector<char>& in_bran
       reached[at] = 1;
     }
   }
-  // Branches are there before the remaining tree is swept: its own children only add.
+  // Branches fill the slots before the remaining tree is swept: its own children only add.
   for (std::size_t k = 0; k < remaining_tree.links.size(); ++k) {
     Link& l = remaining_tree.links[k];
     if (l.parent >= 0 && reached[static_cast<std::size_t>(l.parent)]) l.opens = false;

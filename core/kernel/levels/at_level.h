@@ -1,5 +1,5 @@
 #pragma once
-// A level found at run time as a constant, of those that are compiled.
+// A level known at run time as a compile-time constant.
 
 #include <momenta/core/kernel/levels/level.h>
 

@@ -1,6 +1,5 @@
 #pragma once
-// BatchSweeps at one level; included by the files that are compiled for it, and nowhere else, as
-// open_sweeps_at.h says why.
+// BatchSweeps at one level; included only by files compiled for it: open_sweeps_at.h.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/jacobian_pass.h>
@@ -67,7 +66,7 @@ class BatchSweepsAt final : public BatchSweeps {
   std::size_t failed_state() const override { return failed_state_; }
 
  private:
-  /// Whether so many rows of a pack are: 0 x is 0 of a finite x and NaN of any other.
+  /// Whether all numbers in these rows of a pack are finite: 0 x is NaN for any other.
   bool finite(const double* x, int rows, std::ptrdiff_t stride) {
     Many sum(1.0);
     for (int i = 0; i < rows; ++i) sum += Many::load(x + i * stride) * Many(0.0);
@@ -76,7 +75,7 @@ class BatchSweepsAt final : public BatchSweeps {
     return all;
   }
 
-  // A function of its own: inlined everywhere g++ 12 warns of stores that are not made.
+  // Not inlined: g++ 12 warns of stores that are not made.
   [[gnu::noinline]] void coordinate_rates(const double* q, double* qdot, std::ptrdiff_t stride) {
     for (const auto& b : tree_.model->bodies) {
       if (b.nv == 0) continue;
@@ -94,9 +93,8 @@ class BatchSweepsAt final : public BatchSweeps {
     }
   }
 
-  /// Calls f on every full pack, in place or in a copy of a block of them, and on the rest in a
-  /// padded copy. A pack that fails is repeated state by state, so that one bad state spoils no
-  /// other.
+  /// Calls f on every full pack, in place or in a copied block, and on the rest in a padded copy. A
+  /// pack that fails is repeated state by state: one bad state spoils no other.
   template <class F>
   bool each_pack(const States& s, F&& f) {
     bool all = true;
@@ -116,16 +114,16 @@ class BatchSweepsAt final : public BatchSweeps {
     return all;
   }
 
-  /// Whether a pack in place reads and writes a line here and there in more memory than is near:
-  /// each row of a large batch starts a page of its own. Shorter rows are near enough: what they
-  /// share a page with is wanted next, and a copy would take longer.
+  /// Whether packs in place would touch single lines in more memory than is near: each row of a
+  /// large batch starts a page. Shorter rows share pages wanted next, and a copy would take longer.
   bool far_apart(const States& s) const {
     constexpr std::ptrdiff_t near_by = 3 << 19, page = 4096;  // bytes
     return s.stride * 8 >= page &&
            s.stride * (2 * tree_.model->nq + 2 * tree_.model->nv) * 8 > near_by;
   }
   static constexpr std::size_t most_in_block = 64;
-  /// Rows of packs, `to_next` apart, from `from` or to `to`. Not inlined: as coordinate_rates().
+  /// Copies rows of packs, `to_next` apart, from `from` or to `to`. Not inlined: as
+  /// coordinate_rates().
   [[gnu::noinline]] static void copy_rows(std::size_t count, std::size_t packs,
                                           std::ptrdiff_t stride, double* block, std::size_t to_next,
                                           const double* from, double* to) {
@@ -140,15 +138,15 @@ class BatchSweepsAt final : public BatchSweeps {
           Many::load(here).store(to + there);
       }
   }
-  /// Calls take on the packs of a block of full packs, each in a copy: rows are read and written as
-  /// they stand in memory.
+  /// Calls take on a block of full packs, each copied: rows are read and written in the order of
+  /// memory.
   template <class Take>
   void in_block(const States& s, Take&& take) {
     const auto nq = static_cast<std::size_t>(tree_.model->nq);
     const auto nv = static_cast<std::size_t>(tree_.model->nv);
     const std::size_t packs = s.count / lanes, rows = 2 * nq + 3 * nv;
     block_.resize(packs * rows * lanes);
-    // Of every pack q, p, q̇, ṗ, τ.
+    // In every pack: q, p, q̇, ṗ, τ.
     const auto rows_of = [&](std::size_t at, std::size_t count, const double* from, double* to) {
       copy_rows(count, packs, s.stride, block_.data() + at * lanes, rows * lanes, from, to);
     };
@@ -165,7 +163,7 @@ class BatchSweepsAt final : public BatchSweeps {
     rows_of(2 * nq + nv, nv, nullptr, s.pdot);
   }
 
-  /// The states copied into one pack, the last repeated.
+  /// Calls f on the states copied into one pack, the last repeated.
   template <class F>
   bool copied(const States& s, F&& f) {
     const auto nq = static_cast<std::size_t>(tree_.model->nq);
@@ -192,7 +190,7 @@ class BatchSweepsAt final : public BatchSweeps {
     }
     return true;
   }
-  /// @post failed_state() is the first that failed, where `none_failed_yet`
+  /// @post failed_state() is the first that failed, if `none_failed_yet`
   template <class F>
   bool one_by_one(const States& s, std::size_t first, F&& f, bool none_failed_yet) {
     bool all = true;
@@ -225,7 +223,8 @@ class BatchSweepsAt final : public BatchSweeps {
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
   WhenAsked<JacobianPass<Space, Many>> jacobian_;
   Buffer rates_, padded_, forces_, block_;
-  int singular_joint_ = -1, joint_ = -1;  ///< of the first state that failed, of the last
+  int singular_joint_ = -1,
+      joint_ = -1;  ///< singular_joint_: of the first state that failed; joint_: of the last one
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;
 };

@@ -1,12 +1,12 @@
 #pragma once
-// The forces of joints that acceleration sweeps take, of a pack of states.
+// Forces of joints for acceleration sweeps, of a pack of states.
 
 #include <momenta/core/kernel/levels/strided.h>
 #include <momenta/core/kernel/sweeps.h>
 
 namespace momenta {
 
-/// τ and what the joints' own springs, dampers and torques do; `tau`, coordinates `stride` apart,
+/// τ and the forces of the joints' springs, dampers and torques; `tau`: coordinates `stride` apart,
 /// null: none. `room` holds nv packs. Not inlined: g++ 12 warns of stores that are not made.
 template <class S, class Model>
 [[gnu::noinline]] StridedIn<S> joint_forces(const Model& model, const double* tau,
@@ -16,7 +16,7 @@ template <class S, class Model>
   if (!model.has_joint_forces) {
     if (tau) return {tau, stride};
     S(0.0).store(room);
-    return {room, 0};  // of every coordinate the same zero
+    return {room, 0};  // one zero for all coordinates
   }
   for (const auto& b : model.bodies)
     for (int i = b.u; i < b.u + b.nv; ++i) {

@@ -47,9 +47,9 @@ bool runs4() {
 #endif
 }
 
-std::atomic<int> asked{0};  ///< by use_level(); 0: none
+std::atomic<int> asked{0};  ///< level of use_level(); 0: none
 
-/// `level`, if machine and library have it; `who` asks.
+/// `level`, if machine and library have it; `who` is named in the error.
 int available(int level, const std::string& who) {
   const Level all[] = {{1, built1, true}, {3, built3, runs3()}, {4, built4, runs4()}};
   std::string those;

@@ -1,8 +1,7 @@
 #pragma once
-// OpenSweeps at one level; included by the files that are compiled for it, and nowhere else.
-// Whatever code they emit must carry the level in its types (Pack<W, L>): a function they shared
-// with the rest of the library could be linked in from here and stop on a lesser machine. A test
-// looks for such.
+// OpenSweeps at one level; included only by files compiled for it. Their types must carry the level
+// (Pack<W, L>): a function shared with the rest of the library could be linked from here and stop
+// on a lesser machine. A test looks for such.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/branches/branch_accelerations.h>
@@ -125,7 +124,7 @@ class OpenSweepsAt final : public OpenSweeps {
     if (!ok) singular_joint_ = momentum_.singular_joint();
     return ok;
   }
-  /// M* of this place is not in momentum_; inverse_mass_times() will ask for it.
+  /// Remembers a place whose M* is not in momentum_, for inverse_mass_times().
   void keep_place(double t, const double* q) {
     place_kept_ = true;
     t_ = t;

@@ -1,6 +1,6 @@
 #pragma once
 // Coordinates of a pack of states, loaded and stored by index: coordinate i of the pack's first
-// state is at base[i * stride]. Of one state they stand one after the other.
+// state is at base[i * stride]. For one state they are contiguous.
 
 #include <momenta/core/scalar/pack.h>
 

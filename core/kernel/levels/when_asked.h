@@ -1,5 +1,5 @@
 #pragma once
-// Workspaces that few need, made when a call first does.
+// Workspaces made when first needed.
 
 #include <memory>
 
@@ -8,7 +8,7 @@ namespace momenta {
 template <class Sweeps>
 class WhenAsked {
  public:
-  /// @pre The same tree in every call.
+  /// @pre the same tree in every call
   template <class Tree>
   Sweeps& get(const Tree& tree) {
     if (!sweeps_) sweeps_ = std::make_unique<Sweeps>(tree);

@@ -14,11 +14,11 @@
 namespace momenta {
 namespace {
 
-/// The endings of files that are XML.
+/// Endings of XML files.
 constexpr std::array<std::string_view, 6> xml_endings{".urdf", ".xml",   ".mjcf",
                                                       ".sdf",  ".world", ".xacro"};
 
-/// Options of another format have no meaning here.
+/// Refuses options of other formats.
 void expect_own_options(const std::string& file, const ReadOptions& options, bool urdf, bool mjcf) {
   const auto expect = [&](const char* format, bool given, const char* what) {
     if (given)
@@ -35,7 +35,7 @@ void expect_own_options(const std::string& file, const ReadOptions& options, boo
   }
 }
 
-/// URDF, MJCF or SDF, by the root element.
+/// Parses URDF, MJCF or SDF, by the root element.
 Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
   const reading::Element root = reading::parse_xml(text, file);
   const bool urdf = root.name == "robot", mjcf = root.name == "mujoco", sdf = root.name == "sdf";

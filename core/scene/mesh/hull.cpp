@@ -11,7 +11,7 @@ extern "C" {
 namespace momenta::reading {
 namespace {
 
-/// Qhull's data, freed whatever happens.
+/// Data of Qhull, freed in any case.
 struct Qhull {
   qhT data;
   Qhull(const Qhull&) = delete;
@@ -38,7 +38,7 @@ Mesh hull_of(const Mesh& mesh, std::string& fault) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere(std::fopen("/dev/null", "w"),
                                                                 std::fclose);
   Qhull qhull(nowhere.get());
-  qhT* const qh = &qhull.data;  // the macros of Qhull ask for this name
+  qhT* const qh = &qhull.data;  // the macros of Qhull need this name
   std::string command = "qhull Qt";
   if (qh_new_qhull(qh, 3, static_cast<int>(mesh.points.size()), points.data(), False,
                    command.data(), nullptr, nowhere.get()) != 0) {

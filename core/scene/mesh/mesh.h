@@ -1,8 +1,7 @@
 #pragma once
-// Surfaces made of triangles, from STL, OBJ and MuJoCo's MSH. The readers are our own: a triangle
-// list is a page of code, while the libraries that read it along with fifty formats of pictures
-// allocate what a file's head asks for. Here a count in a head is compared with the size of the
-// file before anything is allocated.
+// Triangle surfaces from STL, OBJ and MuJoCo's MSH. Own readers: a triangle list is a page of code,
+// and libraries allocate what a file's head asks for. Here counts are compared with the file's size
+// first.
 
 #include <Eigen/Core>
 #include <array>
@@ -14,15 +13,15 @@
 
 namespace momenta::reading {
 
-/// Triangles between points. Seen from outside, the corners of a triangle run counter-clockwise.
+/// Triangles between points; from outside, their corners run counter-clockwise.
 struct Mesh {
   std::vector<Eigen::Vector3d> points;  ///< finite [m, or the unit of the file]
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Reads a mesh, by the file's ending: .stl (binary or text), .obj, .msh, in any case; files up to
-/// 64 MiB. Points of an STL with the same coordinates become one; polygons of an OBJ become fans of
-/// triangles. @throws SceneError: "file:line: sentence". Cost O(size of file)
+/// Reads .stl (binary or text), .obj or .msh, in any case, up to 64 MiB. Points of an STL with the
+/// same coordinates become one; polygons of an OBJ become fans of triangles. @throws SceneError:
+/// "file:line: sentence". Cost O(size of file)
 Mesh read_mesh(const std::filesystem::path& file);
 
 /// The same from the bytes of a file; `file` names it in messages.

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Of the sum of the volumes' sizes, what rounding alone may leave of their sum.
+/// Rounding of a sum of volumes, relative to the sum of their sizes.
 constexpr double rounding = 1e-12;
 
 struct Triangle {
@@ -25,14 +25,14 @@ struct Triangle {
   }
 };
 
-/// Calls visit(triangle) for each, its corners counted from `origin`.
+/// Calls visit(triangle) for each triangle, corners relative to `origin`.
 template <class Visit>
 void each(const Mesh& mesh, const Vector3d& origin, const Visit& visit) {
   for (const auto& [i, j, k] : mesh.triangles)
     visit(Triangle{mesh.points[i] - origin, mesh.points[j] - origin, mesh.points[k] - origin});
 }
 
-/// Weighted by area, the mean of the triangles' centres.
+/// Mean of the triangles' centres, weighted by area.
 Vector3d middle_of(const Mesh& mesh, double& area) {
   const Vector3d start = mesh.points.empty() ? Vector3d(Vector3d::Zero()) : mesh.points.front();
   Vector3d sum = Vector3d::Zero();
@@ -45,7 +45,7 @@ Vector3d middle_of(const Mesh& mesh, double& area) {
   return area > 0 ? Vector3d(start + sum / area) : start;
 }
 
-/// An edge that is passed more often one way than the other: its ends from 1, or empty.
+/// An edge passed more often one way than the other, its ends counted from 1; empty: none.
 std::string open_edge(const Mesh& mesh) {
   struct Passage {
     std::pair<std::uint32_t, std::uint32_t> ends;
@@ -134,7 +134,7 @@ MeshMass mass_by_pyramids(const Mesh& mesh, std::string& fault) {
   const Vector3d middle = middle_of(mesh, area);
   MeshMass mass = summed(
       mesh, middle, 4, [](const Triangle& t) { return std::abs(t.volume()); }, false, sizes);
-  // MuJoCo takes the volume, and the inertia, from pyramids about the centre of mass.
+  // MuJoCo takes volume and inertia from pyramids about the centre of mass.
   double volume = 0;
   each(mesh, mass.com, [&](const Triangle& t) { volume += std::abs(t.volume()); });
   mass.measure = volume;

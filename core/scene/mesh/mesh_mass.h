@@ -11,28 +11,27 @@ struct MeshMass {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about com, axes of the mesh
 };
 
-/// The inside of a closed surface, as the sum over its triangles (a, b, c) of tetrahedra with a
-/// common corner o, each with the sign of its volume v = (a−o)·(b−o)×(c−o)/6. With o = 0 and
-/// s = a + b + c:
+/// Inside of a closed surface: sum over its triangles (a, b, c) of tetrahedra with a common corner
+/// o, each with the sign of its volume v = (a−o)·(b−o)×(c−o)/6. With o = 0 and s = a + b + c:
 ///   V = Σ v,   V com = Σ v s/4,   ∫ x xᵀ = Σ v/20 (a aᵀ + b bᵀ + c cᵀ + s sᵀ)
-/// The sums are exact where the surface is closed: where each edge is passed as often one way as
-/// the other, by the divergence theorem; then o does not matter. First o is the mean of the points,
-/// then the centre of mass, about which I = tr(C) 1 − C of C = ∫ x xᵀ.
-/// `fault` gets what keeps a surface from having an inside, in words, or stays empty.
+/// The sums are exact for closed surfaces, whose edges are passed as often one way as the other, by
+/// the divergence theorem; then o does not matter. First o is the mean of the points, then the
+/// centre of mass, about which I = tr(C) 1 − C of C = ∫ x xᵀ. `fault`: why the surface has no
+/// inside, in words; else empty.
 /// Source: the simplex integrals of a polynomial of degree two. Cost O(n log n)
 MeshMass mass_of_inside(const Mesh& mesh, std::string& fault);
 
 /// The same sums with |v| instead of v, about the mean of the triangles' centres weighted by area:
-/// what MuJoCo calls legacy. Equal to the inside where that point sees all triangles from within
-/// (convex surfaces); else too much. Closed or not.
+/// MuJoCo's "legacy". Equal to the inside where that point sees all triangles from within (convex
+/// surfaces), else larger. Also for open surfaces.
 MeshMass mass_by_pyramids(const Mesh& mesh, std::string& fault);
 
-/// The surface itself, of one density per area. Over a triangle of area A:
+/// The surface itself, of uniform density per area. Over a triangle of area A:
 ///   ∫ x = A s/3,   ∫ x xᵀ = A/12 (a aᵀ + b bᵀ + c cᵀ + s sᵀ)
 MeshMass mass_of_shell(const Mesh& mesh, std::string& fault);
 
-/// The convex hull of a mesh's points, by Qhull. `fault` as above: the points lie in a plane, or
-/// Qhull gives up. Cost O(n log n)
+/// Convex hull of a mesh's points, by Qhull. `fault` as above: the points lie in a plane, or Qhull
+/// fails. Cost O(n log n)
 Mesh hull_of(const Mesh& mesh, std::string& fault);
 
 }  // namespace momenta::reading

@@ -14,7 +14,7 @@
 
 namespace momenta::reading {
 
-/// A number of four bytes, the lowest first, as these files and this machine have them.
+/// A number of four bytes, little-endian as these files and this machine are.
 template <class T>
 T number_at(std::string_view bytes, std::size_t at) {
   static_assert(sizeof(T) == 4);
@@ -36,7 +36,7 @@ inline Eigen::Vector3d point_at(std::string_view bytes, std::size_t at, const st
   return point;
 }
 
-/// The next word of a line, cut off its front; empty: none is left.
+/// The next word of a line, removed from its front; empty: none left.
 inline std::string_view next_word(std::string_view& line) {
   constexpr std::string_view space = " \t\r\v\f";
   line.remove_prefix(std::min(line.size(), line.find_first_not_of(space)));

@@ -1,6 +1,6 @@
-// OBJ: "v x y z" are points and "f a b c ..." polygons by the numbers of their points, from 1, or
-// from −1 backwards; what stands behind a slash is of textures and normals. Curves and free
-// surfaces are refused: without them the surface would be another one.
+// OBJ: "v x y z" are points and "f a b c ..." polygons by numbers of points, from 1, or from −1
+// backwards; behind a slash are textures and normals. Curves and free surfaces are refused: without
+// them the surface would be another one.
 
 #include <momenta/core/scene/mesh/mesh.h>
 #include <momenta/core/scene/mesh/numbers.h>
@@ -11,7 +11,7 @@
 namespace momenta::reading {
 namespace {
 
-/// Kinds of lines that say nothing of the surface.
+/// Kinds of lines without effect on the surface.
 constexpr std::array<std::string_view, 20> idle{
     "vn",  "vt",  "vp",       "g",        "o",     "s", "mg", "usemtl", "mtllib",     "usemap",
     "lod", "map", "c_interp", "d_interp", "bevel", "l", "p",  "maplib", "shadow_obj", "trace_obj"};

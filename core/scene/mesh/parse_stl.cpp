@@ -1,7 +1,7 @@
-// STL, binary: 80 bytes of anything, the number of triangles, and 50 bytes for each: a normal,
-// three corners, two bytes of anything. Text: "solid", then facets of three "vertex x y z". Both
-// may begin with "solid": a file is binary where its size is the one that its count asks for.
-// Normals are not used; the order of the corners says what is outside.
+// STL, binary: 80 bytes of anything, the number of triangles, and 50 bytes each: a normal, three
+// corners, two bytes of anything. Text: "solid", then facets of three "vertex x y z". Both may
+// begin with "solid": a file is binary where its size fits its count. Normals are not used; the
+// order of the corners tells the outside.
 
 #include <momenta/core/scene/mesh/mesh.h>
 #include <momenta/core/scene/mesh/numbers.h>
@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t head = 84, facet = 50;
 
-/// Points by their coordinates, each once: STL repeats a point for each triangle around it.
+/// Points by coordinates, each once: STL repeats a point for each triangle around it.
 class Points {
  public:
   explicit Points(Mesh& mesh) : mesh_(mesh) {}

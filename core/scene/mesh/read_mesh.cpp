@@ -1,4 +1,4 @@
-// Which reader a file's ending asks for; and MSH, MuJoCo's own format: four counts, then numbers.
+// Choice of a reader by the file's ending; and MSH, MuJoCo's own format: four counts, then numbers.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/mesh/mesh.h>

@@ -1,4 +1,4 @@
-// <mujoco>: settings, then defaults, bodies and constraints; what is left out is counted.
+// <mujoco>: settings, then defaults, bodies and constraints; the rest is counted.
 
 #include <momenta/core/scene/mjcf/mjcf.h>
 #include <momenta/core/scene/mjcf/mjcf_copies.h>
@@ -48,7 +48,7 @@ void count_left_out(const Node& section, Remarks& remarks) {
   for ([[maybe_unused]] const Node& part : section.children()) remarks.left_out(kind->second);
 }
 
-/// <mesh>es of an <asset>, which lie where the model's settings say.
+/// Reads the <mesh>es of an <asset>, in the folder of the model's settings.
 void read_asset(const Node& asset, const MjcfFiles& files, MjcfModel& model) {
   const std::string* const attached = asset.element().find(of_model);
   std::filesystem::path folder = files.folder();
@@ -62,7 +62,7 @@ void read_asset(const Node& asset, const MjcfFiles& files, MjcfModel& model) {
   }
 }
 
-/// What <compiler> and <default> of an attached model say.
+/// Reads <compiler> and <default> of an attached model.
 void read_attached(const Node& node, MjcfModel& model) {
   MjcfSettings& settings = model.attached[*node.element().find("model")];
   settings.from_attached = *node.element().find("model");

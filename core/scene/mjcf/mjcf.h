@@ -1,7 +1,6 @@
 #pragma once
-// MJCF, as far as it speaks of bodies, joints, inertias, springs, tendons, actuators and equality
-// constraints. What is
-// read, what is left out and what is refused: docs/reference/formats.md.
+// MJCF: bodies, joints, inertias, springs, tendons, actuators and equality constraints. What is
+// read, left out and refused: docs/reference/formats.md.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/xml/xml_node.h>
@@ -11,8 +10,8 @@
 
 namespace momenta::reading {
 
-/// The scene of a <mujoco>, which begins at the <key> of that name or number; empty: as it is
-/// drawn. `controls` as ReadOptions::controls. @throws SceneError
+/// The scene of a <mujoco>, at the <key> of that name or number; empty: as drawn. `controls` as
+/// ReadOptions::controls. @throws SceneError
 Scene read_mjcf(const Element& mujoco, const std::string& file, const std::string& key = "",
                 const std::vector<std::string>& controls = {});
 

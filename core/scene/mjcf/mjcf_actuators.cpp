@@ -1,6 +1,6 @@
 // <actuator> at a constant control u. With l and v the length and velocity of its transmission,
-// gear g times those of a joint or a fixed tendon, the force of an actuator without states of its
-// own is affine in both:
+// gear g times those of a joint or a fixed tendon, the force of an actuator without states is
+// affine in both:
 //
 //   f = (g₀ + g₁ l + g₂ v) u + b₀ + b₁ l + b₂ v = A + B l + C v
 //
@@ -8,8 +8,8 @@
 //   velocity  g₀ = kv, b₂ = −kv          damper    g₂ = −kv
 //   general   gaintype fixed or affine with gainprm, biastype none or affine with biasprm
 //
-// On the coordinate acts g f: a spring of stiffness K = −g² B about where g A + g² B q vanishes, a
-// damper −g² C, a torque where B = 0. q of the file is the scene's and `ref`.
+// On the coordinate acts g f: a spring of stiffness K = −g² B about the q where g A + g² B q
+// vanishes, a damper −g² C, a torque where B = 0. The file's q is the scene's plus `ref`.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
@@ -24,7 +24,7 @@
 namespace momenta::reading {
 namespace {
 
-/// What `--control` says: a value for all, and values by name.
+/// Controls of `--control`: a value for all, and values by name.
 class Controls {
  public:
   explicit Controls(const std::vector<std::string>& texts) {
@@ -44,7 +44,7 @@ class Controls {
     }
   }
   bool any() const { return !values_.empty(); }
-  /// Of the actuator of this name, else `otherwise`.
+  /// Control of the actuator of this name, else `otherwise`.
   double of(const std::string& name, double otherwise) {
     met_.insert(name);
     if (const auto own = values_.find(name); own != values_.end()) return own->second;
@@ -155,7 +155,7 @@ class ActuatorReader {
     model_.scene.forces.push_back(f);
   }
 
-  /// −k₁ (q − r₁) + A + B (q + ref), as one spring.
+  /// Adds −k₁ (q − r₁) + A + B (q + ref), as one spring.
   void on_joint(const std::string& name, const Affine& on) {
     const auto ref = model_.refs.find(name);
     const double constant = on.constant + on.length * (ref == model_.refs.end() ? 0 : ref->second);
@@ -200,7 +200,7 @@ class ActuatorReader {
   MjcfModel& model_;
 };
 
-/// What an actuator that is left out acts on is in the model all the same.
+/// Checks that the joint or tendon of an actuator that is left out exists.
 void expect_known(const Node& node, const MjcfModel& model) {
   for (const char* key : {"joint", "jointinparent"}) {
     if (!node.has(key)) continue;

@@ -1,11 +1,11 @@
 // `armature` a of ball and free joints: ½ a |ω|² of kinetic energy, and ½ a |v|² of a free joint,
-// with ω the body's angular velocity against its parent and v the velocity of its point. Where the
-// parent does not move, ω is the body's own, and the same energy is that of the body with
+// with ω the body's angular velocity against its parent and v the velocity of its point. On a fixed
+// parent, ω is the body's own, and the same energy is that of the body with
 //
 //   I + a 1   about its centre of mass,    and, of a free joint, with a mass a at the point of v,
 //
-// whose weight a constant force −a g there takes back. Against a parent that moves no body has such
-// an energy: it is that of the joint's rotor_inertia.
+// whose weight a constant force −a g there cancels. On a moving parent no body has such an energy:
+// there it becomes the joint's rotor_inertia.
 
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Gives an element an attribute, or another text.
+/// Adds or replaces an attribute of an element.
 void set(Element& element, const std::string& attribute, const std::string& text) {
   for (Attribute& a : element.attributes)
     if (a.name == attribute) {
@@ -23,7 +23,7 @@ void set(Element& element, const std::string& attribute, const std::string& text
   element.attributes.push_back({attribute, text});
 }
 
-/// A file alone is not that deep: parse_xml sees to it.
+/// Refuses depth that attaching has made; parse_xml bounds single files.
 void refuse_depth(const Node& node, int depth) {
   constexpr int deepest = 200;
   if (depth > deepest) node.fail("is nested more than 200 deep, expected no such depth");
@@ -34,7 +34,7 @@ class Assembler {
  public:
   Assembler(MjcfFiles& files, Remarks& remarks) : files_(files), remarks_(remarks) {}
 
-  /// Includes, attaches and replicates in a model, which `way` says the files of.
+  /// Includes, attaches and replicates in a model; `way`: the files around it.
   Element assemble(Element root, const std::string& file, std::vector<fs::path> way) {
     root = with_includes(std::move(root), file, files_);
     std::map<std::string, Asset> assets;
@@ -54,7 +54,7 @@ class Assembler {
   }
 
  private:
-  /// A model that another one has among its assets.
+  /// A model among the assets of another one.
   struct Asset {
     Element element;
     fs::path file;
@@ -123,7 +123,7 @@ class Assembler {
         follow(section, prefix, key, fresh, inside, root);
   }
 
-  /// The body or frame asked for, or the world, with the class that holds in it.
+  /// The body or frame asked for, or the world, with its class of defaults.
   Element part_of(const Node& node, const Element& model) const {
     const char* kind = node.has("body") ? "body" : node.has("frame") ? "frame" : nullptr;
     if (kind == nullptr) {
@@ -151,7 +151,7 @@ class Assembler {
                         in_quotes(node.text("model")));
   }
 
-  /// What has a class of its own keeps it.
+  /// Gives an element the class `active`, unless it has its own.
   static void with_class(Element& element, const std::string& active) {
     const bool holds_others = element.name == "body" || element.name == "frame" ||
                               element.name == "replicate" || element.name == "attach";
@@ -174,7 +174,7 @@ class Assembler {
     return nullptr;
   }
 
-  /// What <compiler> and <default> say, and those of models that this one attaches.
+  /// Adds the <compiler> and <default> of a model, and those of models it attaches, to the root.
   static void settings_of(const Element& model, const std::string& key, const std::string& prefix,
                           Element& root) {
     Element settings;
@@ -194,7 +194,7 @@ class Assembler {
     root.children.push_back(std::move(settings));
   }
 
-  /// What does not come along with a part of the model.
+  /// Remarks on sections that do not come along with a part of a model.
   void tell_dropped(const Element& section, bool fresh) {
     constexpr std::array<std::string_view, 9> along{"tendon",   "equality",  "contact",
                                                     "actuator", "asset",     "default",
@@ -203,8 +203,8 @@ class Assembler {
       remarks_.left_out("<" + section.name + "> of attached models");
   }
 
-  /// Keys of a model that is attached as a whole, named with the prefix. Their numbers are of the
-  /// joints of that model.
+  /// Keys of a model attached as a whole, named with the prefix. Their numbers are for the joints
+  /// of that model.
   void take_keys(const Element& section, const std::string& prefix, const std::string& of,
                  bool whole, Element& root) {
     Element copy = section;
@@ -222,7 +222,7 @@ class Assembler {
     if (!copy.children.empty()) root.children.push_back(std::move(copy));
   }
 
-  /// What a section of the model says of the part, to the root.
+  /// Adds the elements of a section that concern the part to the root.
   void follow(const Element& section, const std::string& prefix, const std::string& key, bool fresh,
               std::set<MjcfName>& inside, Element& root) {
     constexpr std::array<std::string_view, 4> ties{"tendon", "equality", "contact", "actuator"};

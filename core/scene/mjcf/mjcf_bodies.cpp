@@ -1,5 +1,5 @@
-// <worldbody>: nested bodies. A body with several joints becomes a chain of joints with massless
-// bodies between, all with the body's frame at zero; q of a hinge or slide counts from its `ref`.
+// <worldbody>: nested bodies. A body with several joints becomes a chain of joints and massless
+// bodies, all with the body's frame at zero; q of a hinge or slide counts from its `ref`.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
@@ -19,9 +19,9 @@ constexpr std::array<std::string_view, 4> joint_types{"hinge", "slide", "ball", 
 constexpr std::array kind_of_type{JointKind::revolute, JointKind::prismatic, JointKind::spherical,
                                   JointKind::free};
 
-/// Where a body hangs.
+/// The place of a body in the tree.
 struct Place {
-  std::string parent;  ///< by its name in the file
+  std::string parent;  ///< name in the file
   MjcfFrame at;        ///< frame of the parent at qpos0
   std::string active;  ///< class of defaults
   bool moves = false;  ///< some joint lies between the parent and the ground
@@ -116,12 +116,12 @@ class BodyReader {
       }
     }
     if (sum.mass == 0 && inertial) sum = read_inertial(*inertial, model_.angles);
-    if (sum.mass == 0 && !inertial) sum.com = frame.at;  // where MuJoCo puts what is raised
+    if (sum.mass == 0 && !inertial) sum.com = frame.at;  // MuJoCo puts raised masses there
     sum = bounded(sum, model_);
     weigh(spec, sum.mass, sum.com, sum.inertia, inertial ? *inertial : self, model_.remarks);
   }
 
-  /// The joints between a body and its parent, the first next to the parent; none: a weld.
+  /// Adds the joints between a body and its parent, the first next to the parent; none: a weld.
   void hang(const Node& self, const std::vector<MjcfPart>& joints, const MjcfFrame& frame,
             const Place& place, const Place& inside) {
     std::string parent = MjcfModel::in_scene(place.parent);
@@ -185,7 +185,7 @@ class BodyReader {
   }
 
   MjcfModel& model_;
-  int count_ = 0;  ///< bodies so far: the names of those that have none
+  int count_ = 0;  ///< bodies so far: names those without a name
 };
 
 }  // namespace

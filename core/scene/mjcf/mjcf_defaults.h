@@ -1,5 +1,5 @@
 #pragma once
-// <default> classes of MJCF: attributes that an element has where it does not write them itself.
+// <default> classes of MJCF: attributes of elements that do not write them themselves.
 
 #include <momenta/core/scene/xml/xml_node.h>
 
@@ -11,20 +11,19 @@ namespace momenta::reading {
 
 class MjcfDefaults {
  public:
-  /// The class that everything belongs to where nothing else is said.
+  /// The class of everything without another one.
   static constexpr const char* main_class = "main";
 
   MjcfDefaults() { classes_[main_class]; }
 
-  /// Takes a top <default>. A class inherits what its parent says, wherever in it that stands.
+  /// Takes a top <default>. A class inherits all attributes of its parent, whatever their order.
   void take(const Node& node);
-  /// Takes the classes of an attached model, with its prefix before their names. Its main class
-  /// inherits nothing.
+  /// Takes the classes of an attached model, with its prefix; its main class inherits nothing.
   void take(const MjcfDefaults& attached, const std::string& prefix);
 
-  /// The element with what its class adds to it: that of its `class`, else `active`. `kind` names
-  /// it among the defaults: "joint", "geom", "site", "equality". Of the ways to say an orientation
-  /// the element's own one stands alone. @throws SceneError for an unknown class
+  /// The element with the attributes of its `class`, else of `active`, added. `kind`: its name in
+  /// the defaults: "joint", "geom", "site", "equality". An orientation of the element itself
+  /// replaces any in the class. @throws SceneError for an unknown class
   Element with_defaults(const Node& node, const std::string& kind, const std::string& active) const;
 
   /// `childclass` of a body, else the one around it.

@@ -1,5 +1,5 @@
-// The elements of MJCF, after the schema of MuJoCo 3.3. Sections that are told as a whole (contact,
-// sensor, custom, …) have no row; nor have soft bodies, which are refused.
+// Elements of MJCF, after the schema of MuJoCo 3.3. Sections reported as a whole (contact, sensor,
+// custom, …) and soft bodies, which are refused, have no row.
 
 #include <momenta/core/scene/xml/known_elements.h>
 

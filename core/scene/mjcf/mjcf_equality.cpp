@@ -13,7 +13,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// The two ends of a constraint and their frames in their bodies, by name in the file.
+/// The two ends of a constraint: bodies by name in the file, and frames in them.
 struct Ends {
   std::string one, two;
   MjcfFrame at_one, at_two;
@@ -58,8 +58,8 @@ class EqualityReader {
     return name;
   }
 
-  /// Connect: both ends have one point. Weld: R1 quat1 = R2 quat2 besides; the frames of bodies are
-  /// `relpose` in the first and the anchor in the second. What is not given is as at qpos0.
+  /// Connect: both ends have one point. Weld: R1 quat1 = R2 quat2 besides; the frames are `relpose`
+  /// in the first body and the anchor in the second. Defaults are those at qpos0.
   Ends ends() const {
     if (node_.has("site1") || node_.has("site2")) {
       const MjcfModel::Site &one = site("site1"), &two = site("site2");
@@ -89,7 +89,7 @@ class EqualityReader {
     const bool turns = node_.name() == "weld" && node_.number("torquescale", 1) != 0;
     loop_.kind = turns ? LoopKind::weld : LoopKind::point;
     if (e.one == e.two) node_.fail("ties a body to itself, expected two bodies");
-    if (e.two == "world") {  // what does not move is the parent
+    if (e.two == "world") {  // the parent is the fixed side
       std::swap(e.one, e.two);
       std::swap(e.at_one, e.at_two);
     }
@@ -111,8 +111,8 @@ class EqualityReader {
     return c;
   }
 
-  /// Σ ratios₁ q − c0 − Σ c_k (Σ ratios₂ q)^k: the scene's q count from qpos0, as the file's
-  /// lengths and joints do here. `what` is joint or tendon.
+  /// Σ ratios₁ q − c0 − Σ c_k (Σ ratios₂ q)^k: the scene's q, and here the file's lengths and
+  /// joints, count from qpos0. `what`: joint or tendon.
   void couple(std::map<std::string, double> one, const std::map<std::string, double>& two,
               const char* what) {
     const std::array<double, 5> c = polynomial();
@@ -172,7 +172,7 @@ class EqualityReader {
     if (!(loop_.length > 0))
       node_.fail("keeps a tendon at the length " + digits(loop_.length) +
                  ", expected one above 0, or a <connect>");
-    if (two.body == "world") std::swap(one, two);  // what does not move is the parent
+    if (two.body == "world") std::swap(one, two);  // the parent is the fixed side
     loop_.parent = MjcfModel::in_scene(one.body);
     loop_.child = MjcfModel::in_scene(two.body);
     loop_.origin_parent = one.frame.at;

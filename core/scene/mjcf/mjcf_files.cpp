@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts the elements of files in the place of each <include>.
+/// Replaces each <include> by the elements of its file.
 class Includer {
  public:
   Includer(const std::string& model, MjcfFiles& files) : model_(model), files_(files) {

@@ -1,6 +1,5 @@
 #pragma once
-// Files that an MJCF names: parts of the model to include, models to attach, meshes. And how much a
-// model may hold once all its parts are in it.
+// Files named in an MJCF: includes, attached models, meshes. Bounds the size of the whole model.
 
 #include <momenta/core/scene/xml/xml_node.h>
 
@@ -13,37 +12,37 @@ namespace momenta::reading {
 
 class MjcfFiles {
  public:
-  /// Elements that a model may hold with everything included, attached and replicated.
+  /// Most elements of a model with everything included, attached and replicated.
   static constexpr std::size_t most_elements = 200'000;
-  static constexpr int deepest = 10;  ///< files that include or attach each other
+  static constexpr int deepest = 10;  ///< most files that include or attach each other
 
-  /// `model` is the file that is read.
+  /// `model`: the file that is read.
   explicit MjcfFiles(const std::string& model);
 
-  const std::filesystem::path& folder() const { return folder_; }  ///< of the model
-  /// The folder of the file that an element stands in.
+  const std::filesystem::path& folder() const { return folder_; }  ///< folder of the model
+  /// The folder of an element's file.
   std::filesystem::path folder_of(const Node& node) const;
-  /// The root element of a file, its elements marked as standing there. `node` asks for it.
+  /// The root element of a file, its elements marked with it. `node` asks for it.
   Element read(const Node& node, const std::filesystem::path& file);
-  /// Takes note of `count` copies of an element. @throws SceneError beyond most_elements or 64 MiB
+  /// Counts `count` copies of an element. @throws SceneError beyond most_elements or 64 MiB
   void grow(const Node& node, const Element& element, std::size_t count);
-  /// Drops attributes without a value, which MuJoCo takes as not given, from an element and all in
-  /// it; empty() counts them.
+  /// Drops attributes without a value, as MuJoCo does, from an element and those in it; empty()
+  /// counts them.
   void drop_empty(Element& element);
   int empty() const { return empty_; }
-  /// Of the files read so far, for Scene::included.
+  /// Files read so far, for Scene::included.
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  std::filesystem::path folder_, written_;  ///< the folder, and as the model's name has it
+  std::filesystem::path folder_, written_;  ///< the folder, and as written in the model's name
   std::vector<std::string> names_;
   std::size_t elements_ = 0, bytes_ = 0;
   int empty_ = 0;
 };
 
-/// The model with the elements of other files in the place of each <include>. As in MuJoCo a file
-/// is looked for in the folder of the model, then in that of the file that includes it; each may be
-/// included once; its root element may have any name. @throws SceneError
+/// The model with each <include> replaced by the elements of its file. As in MuJoCo a file is
+/// sought in the folder of the model, then in that of the including file; each may be included
+/// once; its root element may have any name. @throws SceneError
 Element with_includes(Element model, const std::string& file, MjcfFiles& files);
 
 }  // namespace momenta::reading

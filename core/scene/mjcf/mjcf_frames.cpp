@@ -24,7 +24,7 @@ Quaterniond from_axis_and_angle(const Node& node, const MjcfAngles& angles) {
   return Quaterniond(Turn(x[3] * angles.unit, axis.normalized()));
 }
 
-/// y is made perpendicular to x.
+/// `xyaxes`: y is made perpendicular to x.
 Quaterniond from_x_and_y(const Node& node) {
   const std::vector<double> n = node.numbers("xyaxes", 6);
   Eigen::Matrix3d axes;
@@ -37,7 +37,7 @@ Quaterniond from_x_and_y(const Node& node) {
   return Quaterniond(axes).normalized();
 }
 
-/// The shortest turn of z to a direction; about x where it is the opposite one.
+/// The shortest turn of z to a direction; about x where it is opposite.
 Quaterniond z_to(const Vector3d& direction) {
   const Vector3d across = Vector3d::UnitZ().cross(direction);
   const double angle = std::atan2(across.norm(), direction.z());

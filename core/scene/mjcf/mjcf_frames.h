@@ -1,5 +1,5 @@
 #pragma once
-// Frames of MJCF: a position and an orientation said in one of five ways.
+// Frames of MJCF: a position, and an orientation in one of five notations.
 
 #include <momenta/core/scene/xml/xml_node.h>
 
@@ -14,9 +14,9 @@ namespace momenta::reading {
 inline constexpr std::array<std::string_view, 5> orientation_keys{"quat", "axisangle", "xyaxes",
                                                                   "zaxis", "euler"};
 
-/// What <compiler> says of angles.
+/// Angles in <compiler>.
 struct MjcfAngles {
-  double unit = std::numbers::pi / 180;  ///< of a written angle [rad]; degrees are the default
+  double unit = std::numbers::pi / 180;  ///< unit of written angles [rad]; default: degrees
   std::string euler_order = "xyz";  ///< lower case: about the turned axes; upper case: the fixed
 };
 
@@ -31,11 +31,11 @@ struct MjcfFrame {
   MjcfFrame inverse() const { return {-(turn.conjugate() * at), turn.conjugate()}; }
 };
 
-/// The turn of three angles, as written, about the axes that `euler_order` says.
+/// The turn by three angles, as written, about the axes of `euler_order`.
 Eigen::Quaterniond turn_by_euler(const Eigen::Vector3d& euler, const MjcfAngles& angles);
-/// The orientation an element gives, else none. @throws SceneError where it gives two
+/// The orientation of an element, else none. @throws SceneError where it has two
 Eigen::Quaterniond read_turn(const Node& node, const MjcfAngles& angles);
-/// `pos` and the orientation; or, by `fromto`, the middle of the two points with z along them.
+/// `pos` and orientation; or, from `fromto`, the middle of two points with z along them.
 MjcfFrame read_frame(const Node& node, const MjcfAngles& angles);
 
 }  // namespace momenta::reading

@@ -44,7 +44,7 @@ Solid solid_of(GeomShape shape, const Vector3d& s) {
   return {cylinder + ball, {x, x, part * 0.4 * r * r + (1 - part) * along}};
 }
 
-/// The surface alone: its area, and moments per mass.
+/// The surface alone: area, and moments per mass.
 Solid shell_of(GeomShape shape, const Vector3d& s) {
   const double pi = std::numbers::pi;
   if (shape == GeomShape::box) {
@@ -69,7 +69,7 @@ Solid shell_of(GeomShape shape, const Vector3d& s) {
   return {area, {across, across, polar / area}};
 }
 
-/// Of a mass on a mesh: the geom's frame is that of the mesh's points.
+/// Inertia of a mass on a mesh, in the frame of the mesh's points, which is the geom's.
 MjcfInertia weighed(const MeshMass& mesh, double mass) {
   return {mass, mesh.com, mass / mesh.measure * mesh.inertia};
 }

@@ -11,8 +11,8 @@ namespace momenta::reading {
 enum class GeomShape { sphere, capsule, ellipsoid, cylinder, box, plane, hfield, mesh, sdf };
 inline constexpr std::array<std::string_view, 9> geom_shapes{
     "sphere", "capsule", "ellipsoid", "cylinder", "box", "plane", "hfield", "mesh", "sdf"};
-/// Radius and half length, or the three half lengths, as the shape has them; `fromto` gives the one
-/// along z. @throws SceneError for numbers that are missing or not positive
+/// Radius and half length, or three half lengths, by shape; `fromto` gives the length along z.
+/// @throws SceneError for numbers that are missing or not positive
 Eigen::Vector3d geom_size(const Node& geom, GeomShape shape);
 
 /// Mass, centre of mass and the inertia about it, in axes of the body.
@@ -21,20 +21,20 @@ struct MjcfInertia {
   Eigen::Vector3d com = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 
-  /// The two as one: m = m1 + m2, com the mean of both, inertias moved there by Steiner's rule.
+  /// Adds another: m = m1 + m2, com the mean of both, inertias moved there by Steiner's rule.
   void add(const MjcfInertia& other);
 };
 
-/// What is known in a frame, in the axes around it.
+/// An inertia in a frame, expressed in the axes around it.
 MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner);
 
 /// <inertial pos mass (diaginertia, orientation | fullinertia)>.
 MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles);
 
-/// A body with `boundmass`, `boundinertia` and `balanceinertia`, or as it was (mjcf_masses.cpp).
+/// A body after `boundmass`, `boundinertia` and `balanceinertia` (mjcf_masses.cpp).
 MjcfInertia bounded(const MjcfInertia& body, const MjcfSettings& settings);
 
-/// A <geom> with its defaults, of its `mass` or of `density` (1000 kg/m³ where neither is given).
+/// A <geom> with its defaults, by its `mass` or `density` (default 1000 kg/m³).
 /// Solid:
 ///   sphere r            V = 4/3 π r³                  2/5 m r²
 ///   ellipsoid a b c     V = 4/3 π a b c               m/5 (b² + c²), …
@@ -51,8 +51,9 @@ MjcfInertia bounded(const MjcfInertia& body, const MjcfSettings& settings);
 ///   capsule             A = 4 π r h + 4 π r²          P = 4 π r h r² + 8/3 π r⁴,
 ///                                                     Z = 4/3 π r h³ + 4 π r² (h² + h r + r²/3)
 ///   box                 A = 8 (ab + bc + ca)          ∫ x² = 8 a² (bc + (ab + ca)/3), …
-/// That of an ellipsoid has no such formula and is refused. Planes and height fields have no mass.
-/// A mesh of a body that is `at_rest` is not weighed: no inertia matters there.
+/// The shell of an ellipsoid has no such formula and is refused. Planes and height fields have no
+/// mass.
+/// Meshes of a body `at_rest` are not weighed: its inertia does not matter.
 MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest, MjcfMeshes& meshes,
                       Remarks& remarks);
 

@@ -1,6 +1,6 @@
-// What acts at a joint of MJCF: spring, damper, friction, armature, limits. Of hinges and slides
-// −k (q − springref) − c q̇, where the scene's q is the file's less `ref`; of ball and free joints
-// −k times the rotation vector (and displacement) from qpos0 and −c times all rates, which is a
+// Forces and limits at a joint of MJCF: spring, damper, friction, armature, limits. Hinges and
+// slides: −k (q − springref) − c q̇, where the scene's q is the file's less `ref`. Ball and free
+// joints: −k times the rotation vector (and displacement) from qpos0 and −c times all rates, a
 // bushing. The `range` of a ball is 0 and the largest angle of its turn.
 
 #include <momenta/core/scene/kinds.h>
@@ -12,14 +12,14 @@
 namespace momenta::reading {
 namespace {
 
-/// `limited` is auto where it is not written: a range limits, unless autolimits is false.
+/// `limited` defaults to auto: a range limits, unless autolimits is false.
 void read_limits(const Node& node, double unit, double ref, JointSpec& joint, MjcfModel& model) {
   constexpr std::array<std::string_view, 3> words{"auto", "false", "true"};
   const std::size_t limited = node.word("limited", words, 0);
   if (limited == 1 || (limited == 0 && !model.auto_limits) || !node.has("range")) return;
   const std::vector<double> range = node.numbers("range", 2);
   if (joint.kind == JointKind::free) return;
-  if (joint.kind == JointKind::spherical) {  // the angle of its turn; beyond π none
+  if (joint.kind == JointKind::spherical) {  // angle of its turn; none beyond π
     const double most = unit * range[1];
     if (model.limits && most > 0 && most < std::numbers::pi) joint.limits = {0, most};
     return;

@@ -32,8 +32,8 @@ const Node& find(const std::vector<Node>& keys, const std::string& chosen, const
            did_you_mean(chosen, views));
 }
 
-/// The numbers of `attribute`, dealt out to `joints`, those of the model: `size(joint)` to each. A
-/// key that came with an attached model is of its joints alone.
+/// Deals the numbers of `attribute` out to `joints`, those of the model: `size(joint)` to each. A
+/// key of an attached model is for its joints alone.
 template <class Size, class Give>
 void deal(const Node& key, const char* attribute, const MjcfModel& model,
           std::vector<JointSpec>& joints, const Size& size, const Give& give) {
@@ -60,7 +60,7 @@ void deal(const Node& key, const char* attribute, const MjcfModel& model,
     }
 }
 
-/// The quaternion that begins at `at`, of length one.
+/// Normalises the quaternion that begins at `at`.
 void normalise(const Node& key, const JointSpec& joint, std::vector<double>& q, std::size_t at) {
   Eigen::Map<Eigen::Vector4d> quaternion(q.data() + at);
   if (!(quaternion.norm() > 0))
@@ -69,7 +69,7 @@ void normalise(const Node& key, const JointSpec& joint, std::vector<double>& q, 
   quaternion /= quaternion.norm();
 }
 
-/// Makes the state of a key that of `joints`, those of the model.
+/// Gives `joints`, those of the model, the state of a key.
 void start_at(const Node& key, const MjcfModel& model, std::vector<JointSpec>& joints) {
   deal(
       key, "qpos", model, joints,
@@ -126,7 +126,7 @@ std::vector<double> controls_of_key(const std::vector<Node>& keyframes, const st
   if (chosen.empty()) return {};
   const std::vector<Node> keys = keys_in(keyframes);
   const Node& key = find(keys, chosen, model);
-  const bool whole = key.element().find(of_model) == nullptr;  // else of actuators of one part
+  const bool whole = key.element().find(of_model) == nullptr;  // else for actuators of one part
   return key.has("ctrl") && whole ? key.numbers("ctrl") : std::vector<double>{};
 }
 

@@ -1,5 +1,5 @@
-// What <compiler> makes of masses, as MuJoCo does it. Of a body with the mass m and the principal
-// moments I1, I2, I3:
+// Changes of masses by <compiler>, as in MuJoCo. For a body with mass m and principal moments I1,
+// I2, I3:
 //
 //   m ≥ boundmass and each Ii ≥ boundinertia, those below are raised to them; what has no mass and
 //   no
@@ -19,7 +19,7 @@ MjcfInertia bounded(const MjcfInertia& body, const MjcfSettings& settings) {
   if (body.mass >= 0) kept.mass = std::max(body.mass, settings.least_mass);
   if (settings.least_moment <= 0 && !settings.balances) return kept;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(body.inertia);
-  const Eigen::Vector3d own = principal.eigenvalues();  // the least first
+  const Eigen::Vector3d own = principal.eigenvalues();  // ascending
   Eigen::Vector3d moments = own.cwiseMax(settings.least_moment);
   if (settings.balances && moments[0] + moments[1] < moments[2])
     moments.setConstant(moments.mean());
@@ -41,7 +41,7 @@ void scale_to_total_mass(MjcfModel& model) {
     body.inertia *= factor;
   }
   for (ForceSpec& force : model.scene.forces)
-    if (force.kind == "wrench") force.force *= factor;  // of gravcomp
+    if (force.kind == "wrench") force.force *= factor;  // force of gravcomp
 }
 
 }  // namespace momenta::reading

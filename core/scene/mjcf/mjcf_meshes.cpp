@@ -38,7 +38,7 @@ Mesh from_numbers(const Node& node, std::string& fault) {
   return mesh;
 }
 
-/// p ← scale · R(refquat)ᵀ (p − refpos). A scale that mirrors turns the triangles about.
+/// p ← scale · R(refquat)ᵀ (p − refpos). A mirroring scale reverses the triangles.
 void place(Mesh& mesh, const Node& node) {
   const Vector3d scale = node.vector("scale", Vector3d::Ones());
   const Vector3d from = node.vector("refpos", Vector3d::Zero());
@@ -62,9 +62,9 @@ MeshMass mass_of(const Mesh& mesh, Inertia inertia, std::string& fault) {
   return fault.empty() ? mass_by_pyramids(hull, fault) : MeshMass{};
 }
 
-/// Whether pyramids make more of a closed mesh than is in it.
+/// Whether pyramids overestimate the volume of a closed mesh.
 bool overcounts(const Mesh& mesh, const MeshMass& pyramids) {
-  constexpr double same = 1e-6;  // of the volume: what points given as float32 leave
+  constexpr double same = 1e-6;  // relative to the volume: rounding of float32 points
   std::string open;
   const double inside = mass_of_inside(mesh, open).measure;
   return open.empty() && inside < (1 - same) * pyramids.measure;
@@ -149,7 +149,7 @@ const MeshMass& MjcfMeshes::of(const Node& geom, bool shell, Remarks& remarks) {
   return *mass;
 }
 
-/// The mesh in the geom's axes; `what` begins the sentence on what is wrong with it.
+/// The mesh in the geom's axes; `what` begins the sentence on a fault.
 Mesh MjcfMeshes::read(const Node& node, const Asset& asset, std::string& what) {
   for (const char* key : {"builtin", "content_type", "maxhullvert"})
     if (node.has(key)) node.fail(key, "is not read, expected a mesh without it");

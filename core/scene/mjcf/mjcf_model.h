@@ -1,6 +1,5 @@
 #pragma once
-// What is known of an MJCF while it is read: settings, defaults, where everything stands at qpos0,
-// and the scene that grows.
+// State of reading an MJCF: settings, defaults, places at qpos0, and the growing scene.
 
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
 #include <momenta/core/scene/mjcf/mjcf_meshes.h>
@@ -15,11 +14,11 @@
 
 namespace momenta::reading {
 
-/// The settings are those that hold where it is read.
+/// The settings are those that hold at the place being read.
 struct MjcfModel : MjcfSettings {
   Scene scene;
   Remarks remarks;
-  std::filesystem::path folder;         ///< of the model
+  std::filesystem::path folder;         ///< folder of the model
   bool rubs = true, limits = true;      ///< flags frictionloss, limit
   bool ties = true;                     ///< flag equality
   bool springs = true, dampers = true;  ///< flags spring, damper
@@ -28,7 +27,8 @@ struct MjcfModel : MjcfSettings {
   FreeNames bodies, edges;
   MjcfDefaults defaults;
   MjcfMeshes meshes;
-  std::map<std::string, MjcfSettings> attached;  ///< of attached models, by the `model` of <attach>
+  std::map<std::string, MjcfSettings>
+      attached;  ///< settings of attached models, by the `model` of <attach>
 
   /// Bodies by name with their frames at qpos0; "world" is the ground.
   std::map<std::string, MjcfFrame> frames{{"world", {}}};
@@ -37,13 +37,13 @@ struct MjcfModel : MjcfSettings {
     MjcfFrame frame;  ///< in the body
   };
   std::map<std::string, Site> sites;
-  /// `ref` of hinges and slides [rad or m]: q of the file less that of the scene; none: 0.
+  /// `ref` of hinges and slides [rad or m]: file's q less the scene's; none: 0.
   std::map<std::string, double> refs;
-  /// Of joints that came with an attached model: the `model` of its <attach>.
+  /// Joints of attached models: the `model` of the <attach>.
   std::map<std::string, std::string> joint_of_attached;
-  /// `springref` less `ref`: q of the scene where tendons have their resting lengths; none: 0.
+  /// `springref` less `ref`: the scene's q at resting lengths of tendons; none: 0.
   std::map<std::string, double> rests;
-  /// Of `springdamper`: until all inertias are known.
+  /// `springdamper` of a joint, kept until all inertias are known.
   struct SpringDamper {
     std::string joint;
     double time_constant, damping_ratio;  ///< [s], [1], > 0
@@ -55,17 +55,17 @@ struct MjcfModel : MjcfSettings {
     double inertia;  ///< a > 0 [kg m² and kg]
   };
   std::vector<BallArmature> ball_armatures;
-  /// A fixed tendon: L of the scene is Σ ratio · q; a spatial one by two sites: their distance.
+  /// Tendon. Fixed: L of the scene is Σ ratio · q; spatial, by two sites: their distance.
   struct Tendon {
-    std::map<std::string, double> ratios;  ///< by joint, none zero; empty of a spatial one
+    std::map<std::string, double> ratios;  ///< by joint, none zero; empty: spatial
     std::optional<std::pair<Site, Site>> ends;
-    double ref = 0;  ///< L of the file less that of the scene
+    double ref = 0;  ///< L of the file less the scene's
     Location at;
   };
   std::map<std::string, Tendon> tendons;
-  std::set<std::string> held_tendons;  ///< those that an <equality> names
+  std::set<std::string> held_tendons;  ///< tendons named by an <equality>
 
-  /// Geoms that can be drawn, and whether MuJoCo draws them by default.
+  /// Geoms that can be drawn, with whether MuJoCo draws them by default.
   std::vector<std::pair<VisualSpec, bool>> drawn;
   std::map<std::string, Eigen::Vector3d> materials;  ///< colours by name
 
@@ -73,40 +73,40 @@ struct MjcfModel : MjcfSettings {
   static std::string in_scene(const std::string& body) { return body == "world" ? "ground" : body; }
 };
 
-/// The bodies of a <worldbody>, with joints, springs, dampers and sites.
+/// Reads the bodies of a <worldbody>, with joints, springs, dampers and sites.
 void read_worldbody(const Node& world, MjcfModel& model);
 
-/// Axis, spring, damper, friction, armature and limits of a joint whose frames are known.
+/// Reads axis, spring, damper, friction, armature and limits of a joint with known frames.
 void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model);
-/// Those of a ball or free joint, as a bushing.
+/// Adds spring and damper of a ball or free joint, as a bushing.
 void add_spring_and_damper(const JointSpec& joint, double stiffness, double damping,
                            MjcfModel& model);
-/// Stiffness and damping of the joints with `springdamper`. After all bodies.
+/// Computes stiffness and damping of joints with `springdamper`. After all bodies.
 void settle_spring_dampers(MjcfModel& model);
 
-/// `settotalmass`: masses and inertias times one factor (mjcf_masses.cpp). After all bodies.
+/// `settotalmass`: scales masses and inertias (mjcf_masses.cpp). After all bodies.
 void scale_to_total_mass(MjcfModel& model);
 
-/// The armature of ball and free joints, as inertia of their bodies (mjcf_armature.cpp). After all
-/// bodies. @throws SceneError where it is none
+/// Adds the armature of ball and free joints to their bodies (mjcf_armature.cpp). After all bodies.
+/// @throws SceneError for one that is no inertia
 void settle_ball_armatures(MjcfModel& model);
 
-/// The name of a hinge or slide that an attribute names. @throws SceneError
+/// The name of a hinge or slide in an attribute. @throws SceneError
 std::string coordinate_of(const Node& node, const char* key, const MjcfModel& model);
 
-/// <tendon>: springs. After all bodies.
+/// Reads springs of <tendon>. After all bodies.
 void read_tendons(const Node& tendons, MjcfModel& model);
 
-/// How many there are in the <actuator> sections.
+/// Number of actuators in the <actuator> sections.
 std::size_t count_actuators(const std::vector<Node>& sections);
 
-/// <actuator> sections at the controls that are given, as text; none: left out, but what they act
-/// on has to be in the model all the same. Actuators without one have that of the <key>, `of_key`
-/// in the order of the file, one for each or empty, else 0. After the tendons.
+/// Reads <actuator> sections at the given controls, as text; none: left out, but their joints and
+/// tendons must be in the model. Actuators without one have that of the <key>, `of_key` in the
+/// order of the file, one for each or empty, else 0. After the tendons.
 void read_actuators(const std::vector<Node>& sections, const std::vector<std::string>& controls,
                     const std::vector<double>& of_key, MjcfModel& model);
 
-/// <equality>: connect, weld, joint and tendon become loops. After the tendons.
+/// Makes loops of <equality>: connect, weld, joint and tendon. After the tendons.
 void read_equality(const Node& equality, MjcfModel& model);
 
 }  // namespace momenta::reading

@@ -7,7 +7,7 @@
 namespace momenta::reading {
 namespace {
 
-/// What an attribute refers to; empty: nothing.
+/// Kind of thing that an attribute refers to; empty: none.
 std::string referred_kind(std::string_view attribute) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 11> others{
       {{"jointinparent", "joint"},

@@ -43,7 +43,8 @@ class Flattener {
   std::vector<MjcfPart> parts;
 
  private:
-  /// The i-th is turned by i euler, and lies `offset` in the axes of the one before from that one.
+  /// Adds the copies: the i-th is turned by i euler and lies `offset` from the one before, in its
+  /// axes.
   void replicas(const Node& node, const MjcfFrame& in, const std::string& active) {
     const Eigen::Vector3d offset = node.vector("offset", Eigen::Vector3d::Zero());
     const Eigen::Vector3d euler = node.vector("euler", Eigen::Vector3d::Zero());
@@ -57,8 +58,8 @@ class Flattener {
   }
 
   const MjcfModel& model_;
-  const MjcfSettings* settings_;       ///< that hold here
-  const MjcfSettings* own_ = nullptr;  ///< those of an attached model
+  const MjcfSettings* settings_;       ///< settings that hold here
+  const MjcfSettings* own_ = nullptr;  ///< settings of an attached model
   const Node* first_ = nullptr;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// What a body holds once frames, replicas and attached models are seen through: its bodies, joints,
-// geoms and sites, each with the frame it stands in. <frame> moves what is in it, in the body, and
-// may give it another class of defaults.
+// Content of a body, with frames, replicas and attached models resolved: bodies, joints, geoms and
+// sites, each with its frame. <frame> moves its content in the body, and may give it another class
+// of defaults.
 
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 
@@ -11,13 +11,13 @@ struct MjcfPart {
   Node node;
   MjcfFrame in;                            ///< frame around it, in the body
   std::string active;                      ///< class of defaults
-  const MjcfSettings* settings = nullptr;  ///< of an attached model; null: as around
+  const MjcfSettings* settings = nullptr;  ///< settings of an attached model; null: as around
 };
 
-/// What stands in a body, in the order of the file. @throws SceneError for composites and flexes
+/// The content of a body, in the order of the file. @throws SceneError for composites and flexes
 std::vector<MjcfPart> parts_of(const Node& body, const std::string& active, const MjcfModel& model);
 
-/// Makes the settings of a part hold, and those before it when it ends.
+/// Applies the settings of a part, and restores those before it.
 class SettingsOf {
  public:
   SettingsOf(const MjcfPart& part, MjcfSettings& now) : now_(now), before_(now) {

@@ -9,10 +9,10 @@
 namespace momenta::reading {
 namespace {
 
-/// In this order: actuators may refer to tendons.
+/// In this order, since actuators may refer to tendons.
 constexpr std::array<std::string_view, 4> following{"tendon", "equality", "contact", "actuator"};
 
-/// Marks a <replicate> that holds its copies; no attribute of a file has such a name.
+/// Marks a replicated <replicate>; no attribute of a file has such a name.
 constexpr const char* done = "is replicated";
 
 class Replicator {
@@ -20,7 +20,7 @@ class Replicator {
   Replicator(Element& root, const std::string& file, MjcfFiles& files)
       : root_(root), file_(file), files_(files) {}
 
-  /// The innermost first: their numbers stand next to the name.
+  /// The innermost first: their numbers are next to the name.
   void expand(Element& element) {
     for (Element& child : element.children) expand(child);
     if (element.name == "replicate" && element.find(done) == nullptr) replicate(element);
@@ -66,7 +66,7 @@ class Replicator {
         if (part.name == section) follow(part, suffixes, inside);
   }
 
-  /// Copies those elements of a section that refer to what was copied.
+  /// Copies the elements of a section that refer to copied names.
   void follow(Element& section, const std::vector<std::string>& suffixes,
               std::set<MjcfName>& inside) {
     std::vector<Element> all;

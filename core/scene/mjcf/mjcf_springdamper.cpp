@@ -1,4 +1,4 @@
-// `springdamper` of a joint: a time constant τ and a damping ratio ζ. MuJoCo makes of them
+// `springdamper` of a joint: a time constant τ and a damping ratio ζ. From them MuJoCo makes
 //
 //   k = I/(τ² ζ²),  c = 2 I/τ,   I = n / Σ (M⁻¹)_ii
 //
@@ -23,12 +23,12 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-/// One rate: an axis through a point, about which or along which it moves what hangs on its joint.
+/// One rate: an axis through a point, about or along which it moves the bodies on its joint.
 struct Rate {
   Vector3d axis, point;
   bool turns = true;
 };
-/// A joint with the joints below it, towards the ground.
+/// A joint, with the way from it to the ground.
 struct Way {
   const JointSpec* joint = nullptr;
   MjcfFrame child;  ///< axes of the body it carries, at qpos0
@@ -63,7 +63,7 @@ class MassMatrix {
  private:
   Eigen::Index size() const { return static_cast<Eigen::Index>(rates_.size()); }
 
-  /// The way to the body a joint carries; its parents' first, one after the other.
+  /// Adds the way to the body of a joint; its parents' first, one after the other.
   int place(const JointSpec& last) {
     std::vector<const JointSpec*> pending{&last};
     while (!places_.contains(pending.back()->parent) && pending.back()->parent != "ground")
@@ -80,7 +80,7 @@ class MassMatrix {
       way.parent = places_.at(j.parent);
       parent = ways_[static_cast<std::size_t>(way.parent)].child;
     }
-    MjcfFrame moved;  // at qpos0 only a free joint is not at zero
+    MjcfFrame moved;  // at qpos0 only free joints are not at zero
     if (j.kind == JointKind::free) {
       const std::vector<double>& x = j.position;
       moved = {{x[0], x[1], x[2]}, Eigen::Quaterniond(x[3], x[4], x[5], x[6])};
@@ -125,7 +125,7 @@ class MassMatrix {
   }
 
   std::map<std::string, const JointSpec*> carriers_;  // by child
-  std::map<std::string, int> places_;                 // of ways, by body
+  std::map<std::string, int> places_;                 // ways by body
   std::vector<Way> ways_;
   std::vector<Rate> rates_;
   MatrixXd inverse_;
@@ -155,7 +155,7 @@ void settle_spring_dampers(MjcfModel& model) {
         joint.damping = damping;
         continue;
       }
-      // it takes the place of what the attributes stiffness and damping made
+      // replaces the bushing made from the attributes stiffness and damping
       std::erase_if(model.scene.forces, [&](const ForceSpec& f) {
         return f.kind == "bushing" && f.parent == joint.parent && f.child == joint.child;
       });

@@ -1,7 +1,7 @@
-// <tendon>: a fixed tendon is a sum of joint coordinates, L = Σ coef q; where it has stiffness or
-// damping, a coordinate spring. A spatial tendon between two sites is a spring-damper. L of the
-// scene counts from qpos0: L_file − Σ coef ref. Without `springlength` a spring rests where every
-// joint is at its `springref`; with two lengths it has a dead band between them.
+// <tendon>: a fixed tendon is a sum of joint coordinates, L = Σ coef q; with stiffness or damping
+// it is a coordinate spring. A spatial tendon between two sites is a spring-damper. The scene's L
+// counts from qpos0: L_file − Σ coef ref. Without `springlength` a spring rests with every joint at
+// its `springref`; with two lengths it has a dead band between them.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
@@ -39,7 +39,7 @@ class TendonReader {
     return model_.limits && node_.has("range") && limited != 1 &&
            (limited == 2 || model_.auto_limits);
   }
-  /// `range`, counted from `shift`.
+  /// Takes `range`, counted from `shift`.
   void limits(double shift, ForceSpec& f) const {
     if (!limited()) return;
     const std::vector<double> range = node_.numbers("range", 2);
@@ -49,8 +49,7 @@ class TendonReader {
     f.limits = {range[0] - shift, range[1] - shift};
   }
 
-  /// `springlength` less `shift` into the force; where it is not given, the length at the
-  /// springrefs, which is `otherwise`.
+  /// Takes `springlength` less `shift`; default: `otherwise`, the length at the springrefs.
   void rest(double shift, double otherwise, ForceSpec& f) {
     f.rest = otherwise;
     if (!node_.has("springlength")) return;
@@ -105,7 +104,7 @@ class TendonReader {
     return tendon;
   }
 
-  /// A body with every joint at its springref.
+  /// Frame of a body with every joint at its springref.
   MjcfFrame at_rest(const std::string& body) const {
     MjcfFrame frame;
     std::string name = body;
@@ -161,7 +160,7 @@ class TendonReader {
     }
     const auto place = [&](const MjcfModel::Site& s) { return at_rest(s.body) * s.frame.at; };
     const MjcfModel::Site *one = sites[0], *two = sites[1];
-    if (one->body == two->body) return tendon;  // of one length for ever
+    if (one->body == two->body) return tendon;  // of constant length
     const double length = (place(*one) - place(*two)).norm();
     if (two->body == "world") std::swap(one, two);
     ForceSpec f = force("spring-damper");

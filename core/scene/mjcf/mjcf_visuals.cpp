@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Red, green, blue of `rgba`, each kept within 0 and 1; none: not given.
+/// Red, green, blue of `rgba`, clamped to 0 … 1; none: not given.
 std::optional<Vector3d> colour_of(const Node& node) {
   if (!node.has("rgba")) return std::nullopt;
   const std::vector<double> rgba = node.numbers("rgba", 4);

@@ -1,5 +1,5 @@
 // <sdf>: worlds, models and links. Frames and links of all models are taken first, then joints,
-// which may name any of them.
+// which may name any.
 
 #include <momenta/core/scene/sdf/sdf.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
@@ -12,10 +12,11 @@ namespace {
 
 using Scoped = std::pair<std::string, Node>;
 
-/// Elements to be read once all frames are known.
+/// Elements that are read once all frames are known.
 struct Waiting {
-  std::vector<Scoped> joints;            ///< with their scopes
-  std::vector<Scoped> links, canonical;  ///< with full names; models that say what carries them
+  std::vector<Scoped> joints;  ///< with their scopes
+  std::vector<Scoped> links,
+      canonical;  ///< links with full names; models that name their canonical link
 };
 
 Node called(const Node& node, const char* title) {
@@ -82,12 +83,12 @@ void read_link(const Scoped& scoped, SdfModel& model) {
   model.scene.bodies.push_back(body);
 }
 
-/// What names are relative to where nothing is said.
+/// The frame names are relative to by default.
 const char* own_frame(const std::string& scope) {
   return scope.empty() ? "world" : "__model__";
 }
 
-/// A link `world` without inertia, a name that is kept for the ground from 1.7 on.
+/// Whether a link is the ground: `world` without inertia; the name is reserved from 1.7 on.
 bool is_ground(const Node& link, SdfModel& model) {
   if (!model.older_than(7) || link.text("name") != "world" || link.child("inertial")) return false;
   model.remarks.count("taken as the ground: links called world without <inertial>");
@@ -97,7 +98,7 @@ bool is_ground(const Node& link, SdfModel& model) {
 void take_frames(const Node& owner, const std::string& scope, bool still, SdfModel& model,
                  Waiting& waiting);
 
-/// A model in `scope`; `still`: it is in a static one.
+/// Takes a model in `scope`; `still`: in a static one.
 void take_model(const Node& node, const std::string& scope, bool still, SdfModel& model,
                 Waiting& waiting) {
   const std::string name = node.text("name"), inside = scope + name + "::";
@@ -132,7 +133,7 @@ void take_model(const Node& node, const std::string& scope, bool still, SdfModel
   take_frames(node, inside, still, model, waiting);
 }
 
-/// <model>, <frame> and <joint> of a model or a world, with all that is in them.
+/// Takes <model>, <frame> and <joint> of a model or a world, with their content.
 void take_frames(const Node& owner, const std::string& scope, bool still, SdfModel& model,
                  Waiting& waiting) {
   for (const Node& node : owner.children("model"))

@@ -1,5 +1,5 @@
 #pragma once
-// SDF 1.x: one <model>, or a <world> of models. What is read, what is left out and what is refused:
+// SDF 1.x: one <model>, or a <world> of models. What is read, left out and refused:
 // docs/reference/formats.md.
 
 #include <momenta/core/scene/scene.h>
@@ -9,7 +9,7 @@
 
 namespace momenta::reading {
 
-/// The scene of an <sdf>. `sdf` and `file` outlive the call only. @throws SceneError
+/// The scene of an <sdf>. `sdf` and `file` need only outlive the call. @throws SceneError
 Scene read_sdf(const Element& sdf, const std::string& file);
 
 }  // namespace momenta::reading

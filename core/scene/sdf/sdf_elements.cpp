@@ -1,5 +1,4 @@
-// The elements of SDF 1.4 to 1.12. Sensors, plugins, lights and what else the readers tell as a
-// whole have no row.
+// Elements of SDF 1.4 to 1.12. Sensors, plugins, lights and others reported as a whole have no row.
 
 #include <momenta/core/scene/xml/known_elements.h>
 

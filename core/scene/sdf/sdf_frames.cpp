@@ -87,8 +87,7 @@ Pose Frames::local(const std::string& name, const Node& asked) const {
   return frame.pose * between(name, frame.placement, asked).inverse();
 }
 
-/// X_outer,inner, by the way from `inner` outwards. Models stand inside each other, so that this
-/// and local() end.
+/// X_outer,inner, along the way from `inner` outwards. Models are nested, so this and local() end.
 Pose Frames::between(const std::string& outer, std::string inner, const Node& asked) const {
   Pose pose;
   for (std::size_t step = 0; inner != outer; ++step) {
@@ -101,7 +100,7 @@ Pose Frames::between(const std::string& outer, std::string inner, const Node& as
 }
 
 const Pose& Frames::world(const std::string& name, const Node& asked) {
-  std::vector<std::string> way;  // outwards, to a frame whose pose is known
+  std::vector<std::string> way;  // outwards, to a frame with a known pose
   for (std::string at = name; !world_.contains(at); at = this->at(at).relative_to) {
     if (way.size() > frames_.size())
       asked.fail(

@@ -1,4 +1,4 @@
-// <include>: a model of another file, in the place of the element.
+// <include>: replaced by a model of another file.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t deepest = 10, most_elements = 200'000;
 
-/// Versions before 1.5 and before 1.7 read axes and names of joints in other ways.
+/// Conventions of a version: axes and names of joints changed with 1.5 and 1.7.
 int manner_of(const std::array<int, 2>& version) {
   return version[1] < 5 ? 0 : version[1] < 7 ? 1 : 2;
 }
@@ -38,7 +38,7 @@ class Includer {
   }
 
  private:
-  /// What came out of a file is expanded already.
+  /// Expands an element, unless it came from a file, expanded already.
   void expand_once(Element& child, const std::string& file, int manner) {
     const bool own = !child.file || child.file->name == now();
     if (own) expand(child, file, manner);
@@ -58,7 +58,7 @@ class Includer {
     else if (name.find("://") != std::string::npos)
       uri.fail("is " + in_quotes(name) +
                ", expected a file beside this one: nothing is fetched from elsewhere");
-    // From the folder of this file, or from that of the first.
+    // In the folder of this file, or of the first.
     const fs::path here = around_.back().parent_path();
     std::error_code error;
     for (const fs::path& folder : {here, folder_}) {
@@ -113,7 +113,7 @@ class Includer {
     return model;
   }
 
-  /// What the <include> says goes before what the model says.
+  /// Sets the attributes and elements of the <include> over those of the model.
   static void override_with(const Node& include, Element& model) {
     const auto set = [&](const char* attribute, const std::string& text) {
       for (Attribute& a : model.attributes)
@@ -135,7 +135,7 @@ class Includer {
       if (other.name == "plugin") model.children.push_back(other);
   }
 
-  fs::path folder_, written_;  ///< of the first file, and as its name has it
+  fs::path folder_, written_;  ///< folder of the first file, and as written in its name
   std::vector<fs::path> around_;
   std::vector<std::string>& names_;
   std::size_t elements_ = 0;
@@ -150,8 +150,8 @@ std::array<int, 2> read_sdf_version(const Node& sdf) {
   const auto major = std::from_chars(at, end, version[0]);
   const auto minor = std::from_chars(std::min(major.ptr + 1, end), end, version[1]);
   constexpr int oldest = 4, newest = 12;
-  if (major.ec != std::errc() || minor.ec != std::errc() || version[0] != 1 ||
-      *major.ptr != '.' || minor.ptr != end || version[1] < oldest || version[1] > newest)
+  if (major.ec != std::errc() || minor.ec != std::errc() || version[0] != 1 || *major.ptr != '.' ||
+      minor.ptr != end || version[1] < oldest || version[1] > newest)
     sdf.fail("version", "is " + in_quotes(text) + ", expected 1.4 to 1.12");
   return version;
 }

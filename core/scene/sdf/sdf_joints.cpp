@@ -2,9 +2,8 @@
 //
 // Gears: <joint type="gearbox"> has θ2 = −ratio θ1, θ1 the angle from the reference body to the
 // parent about `axis`, θ2 that from the reference body to the child about `axis2`; these angles are
-// coordinates of joints that the file has between the same links. An axis that is not given is that
-// of its joint. <mimic> has
-// q = multiplier (q_leader − reference) + offset.
+// coordinates of joints between the same links. A missing axis is that of its joint. <mimic> has q
+// = multiplier (q_leader − reference) + offset.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
@@ -26,7 +25,7 @@ constexpr std::array kind_of_type{JointKind::revolute,  JointKind::revolute,  Jo
                                   JointKind::weld,      JointKind::spherical, JointKind::universal,
                                   JointKind::universal, JointKind::helical};
 
-constexpr double same_axis = 1e-3;  // [rad] of a gear and its joint: files round angles
+constexpr double same_axis = 1e-3;  // [rad] between a gear and its joint: files round angles
 constexpr std::array<double, 2> locked{0, 0};
 constexpr double no_bound = 1e16;  // [rad or m]
 
@@ -46,8 +45,7 @@ Vector3d read_axis(const Node& axis, const std::string& scope, const std::string
   return model.frames.world(in, axis).turn * along;
 }
 
-/// A bound of <limit>; nothing: there is none, which files write as an infinity or as 1e16 on that
-/// side, `sign`.
+/// A bound of <limit>; nothing: none, written as an infinity or 1e16 on that side, `sign`.
 std::optional<double> bound(const Node& limit, const char* name, int sign) {
   const auto node = limit.child(name);
   if (!node) return std::nullopt;
@@ -63,7 +61,7 @@ std::optional<double> bound(const Node& limit, const char* name, int sign) {
   return std::nullopt;
 }
 
-/// Least and largest coordinate; a range that is none is left out, unless it is one value, 0.
+/// Least and largest coordinate; an empty range is left out, unless it is the value 0.
 void read_limits(const Node& limit, JointSpec& joint, Remarks& remarks) {
   if (limit.child("lower") || limit.child("upper")) {
     const auto lower = bound(limit, "lower", -1), upper = bound(limit, "upper", 1);
@@ -76,7 +74,7 @@ void read_limits(const Node& limit, JointSpec& joint, Remarks& remarks) {
   }
 }
 
-/// Limits, springs, dampers and friction of an axis.
+/// Reads limits, springs, dampers and friction of an axis.
 void read_dynamics(const Node& axis, JointSpec& joint, Remarks& remarks) {
   if (const auto limit = axis.child("limit")) read_limits(*limit, joint, remarks);
   const auto dynamics = axis.child("dynamics");
@@ -92,7 +90,7 @@ void read_dynamics(const Node& axis, JointSpec& joint, Remarks& remarks) {
   if (joint.friction < 0) dynamics->child("friction")->fail("is negative, expected a number >= 0");
 }
 
-/// n² I of the motor's rotor, as Drake writes it.
+/// Reads n² I of a motor's rotor, in Drake's tags.
 void read_rotor(const Node& node, JointSpec& joint) {
   const auto inertia = node.child("drake:rotor_inertia"), ratio = node.child("drake:gear_ratio");
   if (!inertia) return;
@@ -137,7 +135,7 @@ void read_mimic(const Node& axis, int number, const std::string& scope, SdfJoint
   couplers.push_back(coupler);
 }
 
-/// A joint whose limits are both 0 does not move, as files had it before there were fixed ones.
+/// Welds a joint with both limits 0, which older files have for fixed ones.
 void weld(SdfJoint& joint, JointSpec& springs, Remarks& remarks) {
   joint.spec.kind = JointKind::weld;
   joint.spec.rotor_inertia.clear();
@@ -145,8 +143,8 @@ void weld(SdfJoint& joint, JointSpec& springs, Remarks& remarks) {
   remarks.count("welded: joints whose limits are both 0");
 }
 
-/// A universal joint with springs, dampers, friction or limits is two revolute ones and a body
-/// without mass between, so that each axis has its own.
+/// Splits a universal joint with springs, dampers, friction or limits into two revolute ones and a
+/// massless body, so that each axis has its own.
 void split(SdfJoint joint, const JointSpec& first, const JointSpec& second, SdfModel& model) {
   BodySpec cross;
   cross.at = joint.spec.at;

@@ -1,12 +1,12 @@
-// Joints of the scene and loops. The tree is made breadth first from the ground, then from the
-// links that carry what the ground does not reach and float. Joints that no loop can be (screws,
-// springs, dampers, gears) are in it before all others; each further joint is a loop.
+// Joints of the scene and loops. The tree is built breadth first from the ground, then from the
+// links that carry floating parts. Joints without a loop form (screws, springs, dampers, gears)
+// come into it before all others; each further joint is a loop.
 //
 // In the pose of the file, X_P and X_C of two bodies, a joint at the point o with the axis a has
 //
 //   origin_parent = X_P⁻¹ o,  origin_child = X_C⁻¹ o,  rotation = R_Pᵀ R_C,  axis = R_Cᵀ a.
 //
-// Where the tree goes from a child to its parent, the coordinates stay if the axes turn round:
+// Where the tree goes from a child to its parent, coordinates stay if axes are reversed:
 // (R(a1, q1) R(a2, q2))⁻¹ = R(−a2, q2) R(−a1, q1).
 
 #include <momenta/core/scene/kinds.h>
@@ -20,7 +20,7 @@
 namespace momenta::reading {
 namespace {
 
-/// Sets of bodies, 0 the ground.
+/// Disjoint sets of bodies, 0 the ground.
 class Sets {
  public:
   explicit Sets(std::size_t count) : up_(count), members_(count) {
@@ -29,7 +29,7 @@ class Sets {
   }
   std::size_t of(std::size_t i) const { return up_[i]; }
   const std::vector<std::size_t>& members(std::size_t i) const { return members_[up_[i]]; }
-  /// False: they were one already. Cost O(members of the smaller)
+  /// Unites two sets; false: they were one. Cost O(members of the smaller)
   bool join(std::size_t a, std::size_t b) {
     a = up_[a], b = up_[b];
     if (a == b) return false;
@@ -104,7 +104,7 @@ class TreeMaker {
     model_.scene.joints.push_back(joint);
   }
 
-  /// Takes joints into the tree, breadth first from all that hangs together with `root`.
+  /// Takes joints into the tree, breadth first from the set of `root`.
   void grow(std::size_t root) {
     std::queue<std::size_t> left;
     for (const std::size_t body : sets_.members(root)) left.push(body);
@@ -120,7 +120,7 @@ class TreeMaker {
       }
   }
 
-  /// Joints of the scene, from `root` outwards.
+  /// Makes the joints of the scene, from `root` outwards.
   void orient(std::size_t root) {
     std::queue<std::size_t> left;
     left.push(root);
@@ -173,7 +173,7 @@ class TreeMaker {
     if (from.spec.limits) model_.remarks.left_out("limits of joints that close loops");
     if (from.spec.friction != 0) model_.remarks.left_out("friction of joints that close loops");
     loop.kind = kinds.at(from.spec.kind);
-    frames(from, from.child == "ground", loop);  // what does not move is the parent
+    frames(from, from.child == "ground", loop);  // the parent is the fixed side
     return loop;
   }
 

@@ -1,4 +1,4 @@
-// <visual>s of links as solids to be drawn.
+// <visual>s of links as drawn solids.
 
 #include <momenta/core/scene/sdf/sdf_model.h>
 #include <momenta/core/scene/xml/file_inside.h>
@@ -8,7 +8,7 @@
 namespace momenta::reading {
 namespace {
 
-/// The shape of a <geometry>; false: none that is drawn, `why` has the reason.
+/// The shape of a <geometry>; false: not drawn, the reason is in `why`.
 bool take_shape(const Node& geometry, const std::string& file, VisualSpec& visual,
                 std::string& why) {
   why = "visual shapes of no kind that is drawn, or without a size";
@@ -72,7 +72,7 @@ void draw_visual(const Node& part, const std::string& body, SdfModel& model) {
         diffuse->fail("has " + std::to_string(rgb.size()) + " numbers, expected 3 or 4");
       visual.colour = Eigen::Vector3d(rgb[0], rgb[1], rgb[2]).cwiseMax(0).cwiseMin(1);
     }
-  // The path is from the folder of the scene.
+  // The path is relative to the folder of the scene.
   if (!visual.file.empty() && part.file() != model.scene.file) {
     namespace fs = std::filesystem;
     visual.file = (fs::path(part.file()).parent_path() / visual.file)

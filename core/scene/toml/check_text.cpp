@@ -25,9 +25,8 @@ void check_characters(std::string_view text, const std::string& file) {
   }
 }
 
-/// Walks over the text as a TOML lexer does, just far enough to tell strings and comments from the
-/// rest, and counts. Where the text is malformed the walk may end early: the parser stops there
-/// too.
+/// Walks over the text as a TOML lexer, far enough to tell strings and comments from the rest, and
+/// counts. In malformed text it may end early, as the parser does.
 class TextWalk {
  public:
   TextWalk(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -95,12 +94,13 @@ class TextWalk {
     if (++values_ > most_values) refuse("more than 4 million values", "a scene of fewer");
   }
 
-  /// A key may stand here: no value yet since the line, the inline table or its last comma began.
+  /// Whether a key may stand here: no value since the line, the inline table or its last comma
+  /// began.
   bool at_key() const {
     return is_header_ || (equals_ == 0 && (depth_ == 0 || closing_[depth_ - 1] == '}'));
   }
-  /// A word is what toml++ reads in one go: up to white space, a comma or a closing bracket, and
-  /// past anything else; of a key up to its equals sign.
+  /// Notes words as toml++ reads them: up to white space, a comma or a closing bracket; keys up to
+  /// their equals sign.
   void note_word(char c) {
     switch (c) {
       case ' ':
@@ -128,14 +128,14 @@ class TextWalk {
         in_word_ = true;
     }
   }
-  /// A quote that begins no string: toml++ reads numbers and words on over it.
+  /// Whether a quote begins no string: toml++ reads on over it within numbers and words.
   bool within_a_word() const { return in_word_ && !(at_key() && text_[i_ - 1] == '.'); }
   void require_ascii_line() {
     for (; i_ < text_.size() && text_[i_] != '\n'; ++i_)
       require_ascii("after a quote that is none of a string");
   }
 
-  /// After [ or [[ of a table header toml++ takes for granted that a name follows.
+  /// Refuses [ or [[ without a name, which toml++ takes for granted.
   void check_header() const {
     std::size_t k = i_ + 1;
     if (k < text_.size() && text_[k] == '[') ++k;
@@ -152,7 +152,7 @@ class TextWalk {
     return text_.substr(i_, 3) == std::string_view(quote == '"' ? "\"\"\"" : "'''");
   }
 
-  /// Moves behind a string. @return false where it is not closed
+  /// Skips a string. @return false where it is not closed
   bool skip_string(char quote) {
     const bool many_lines = starts_with_three(quote);
     i_ += many_lines ? 3 : 1;
@@ -179,7 +179,7 @@ class TextWalk {
     return false;
   }
 
-  /// Moves behind a backslash and the character after it or, at the end of a line, all white space.
+  /// Skips a backslash and the character after it or, at the end of a line, all white space.
   void skip_escape(bool many_lines) {
     const auto is_white = [&] {
       return i_ < text_.size() &&
@@ -196,8 +196,9 @@ class TextWalk {
     require_ascii("after a backslash at the end of a line");
   }
 
-  /// toml++ has undefined behaviour wherever it asks whether a character outside ASCII is white
-  /// space. That is never within a comment, nor within a string but for the places asked here.
+  /// Refuses a character outside ASCII: toml++ has undefined behaviour where it asks whether such
+  /// is white space. That is never within a comment, and within a string only at the places asked
+  /// here.
   void require_ascii(const std::string& where) const {
     if (i_ < text_.size() && static_cast<unsigned char>(text_[i_]) >= 0x80)
       refuse("not valid TOML: a character outside ASCII " + where,
@@ -218,8 +219,8 @@ class TextWalk {
   const std::string& file_;
   std::size_t i_ = 0, line_begin_ = 0;
   bool begins_line_ = true, is_header_ = false, in_word_ = false;
-  int equals_ = 0;                       ///< signs since a key was last expected
-  std::array<char, deepest> closing_{};  // of the brackets open here
+  int equals_ = 0;                       ///< equals signs since a key was last expected
+  std::array<char, deepest> closing_{};  // for the brackets open here
   std::size_t depth_ = 0;
   int line_ = 1, dots_ = 0, values_ = 0;
 };

@@ -231,7 +231,7 @@ void Fields::vector_or_formulas(std::string_view key, Quantity quantity, Eigen::
   const Value* value = find(key);
   if (value == nullptr) return;
   if (value->type != Value::Type::array || value->items.size() != 3) {
-    numbers = vector(key, quantity);  // says what is expected
+    numbers = vector(key, quantity);  // its sentence says what is expected
     return;
   }
   for (std::size_t i = 0; i < 3; ++i) {

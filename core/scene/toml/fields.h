@@ -1,6 +1,6 @@
 #pragma once
-// The keys of one TOML table, read by type. Every complaint names the owner of the key, the key,
-// what was found and what was expected, and points to the value.
+// Keys of one TOML table, read by type. Complaints name the owner of the key, the key, what was
+// found and what was expected, at the place of the value.
 
 #include <momenta/core/scene/toml/parameters.h>
 
@@ -16,7 +16,7 @@ namespace momenta::reading {
 
 enum class Bound { none, not_negative, positive };
 
-/// What a number means: its unit (empty: none) and its sign.
+/// Unit (empty: none) and sign of a number.
 struct Quantity {
   std::string_view unit;
   Bound bound = Bound::none;
@@ -24,15 +24,15 @@ struct Quantity {
 
 class Fields {
  public:
-  /// `owner` opens every sentence ("body 'crank'"). `parameters`: what formulas in place of numbers
-  /// may name; null: no formulas. @throws SceneError unless `value` is a table
+  /// `owner` opens every sentence ("body 'crank'"). `parameters`: names of formulas in place of
+  /// numbers; null: no formulas. @throws SceneError unless `value` is a table
   Fields(const Value& value, std::string owner, const std::string& file,
          const Parameters* parameters = nullptr, std::string path = "");
 
-  /// Refuses every key but these. The first unknown one is named, with the nearest known key.
+  /// Refuses all other keys; names the first unknown one, and the nearest known key.
   void allow(const std::vector<std::string_view>& known) const;
 
-  /// Refuses `key` with the reason why it has no place here.
+  /// Refuses `key` for a reason.
   void refuse(std::string_view key, const std::string& reason) const;
 
   bool has(std::string_view key) const { return find(key) != nullptr; }
@@ -40,7 +40,7 @@ class Fields {
   Location at() const { return value_.at; }
   const std::string& file() const { return file_; }
 
-  // Without `otherwise` the key must be there.
+  // Keys without `otherwise` are required.
   double number(std::string_view key, Quantity quantity) const;
   double number(std::string_view key, Quantity quantity, double otherwise) const;
   int count(std::string_view key, int otherwise) const;  ///< a whole number > 0
@@ -56,9 +56,9 @@ class Fields {
   /// An array of vectors.
   std::vector<Eigen::Vector3d> vectors(std::string_view key, Quantity quantity) const;
 
-  /// A vector whose components may be formulas of the scene (core/scene/formula.h): those that
-  /// parameters alone do not give go to `formulas`, the others to `numbers`; nothing where the key
-  /// is missing.
+  /// A vector whose components may be formulas of the scene (core/scene/formula.h): those that need
+  /// more than parameters go to `formulas`, the others to `numbers`; nothing where the key is
+  /// missing.
   void vector_or_formulas(std::string_view key, Quantity quantity, Eigen::Vector3d& numbers,
                           std::array<std::string, 3>& formulas) const;
 
@@ -68,7 +68,7 @@ class Fields {
   /// The table below `key`, if any.
   std::optional<Fields> table(std::string_view key) const;
 
-  /// The tables of [[key]]; `title` and their name, or their number, become their owner.
+  /// The tables of [[key]]; their owner is `title` and their name or number.
   std::vector<Fields> tables(std::string_view key, std::string_view title) const;
 
   [[noreturn]] void fail_at(Location at, const std::string& sentence) const;
@@ -87,7 +87,7 @@ class Fields {
   std::string owner_;
   const std::string& file_;
   const Parameters* parameters_;
-  std::string path_;  ///< "origin." inside the table of the key `origin`
+  std::string path_;  ///< "origin." in the table of `origin`
 };
 
 }  // namespace momenta::reading

@@ -10,7 +10,7 @@
 namespace momenta::reading {
 namespace {
 
-/// Values of parameters, each after those it is made of.
+/// Values of parameters, each after those in its formula.
 class Resolver {
  public:
   Resolver(const Value& table, const std::vector<std::string>& names, const std::string& file)
@@ -40,7 +40,7 @@ class Resolver {
     return "parameter " + in_quotes(names_[i]) + ", " + in_quotes(v.text) + ": ";
   }
 
-  /// Depth first, without recursion: a chain of parameters may be long.
+  /// Depth first, without recursion: chains of parameters may be long.
   void visit(std::size_t first, std::vector<char>& state, std::vector<double>& values,
              std::vector<char>& used) {
     std::vector<std::size_t> way{first};
@@ -69,10 +69,10 @@ class Resolver {
                  ", expected a finite number");
       state[i] = done;
       way.pop_back();
-      if (!way.empty()) state[way.back()] = fresh;  // looks for what else it waits for
+      if (!way.empty()) state[way.back()] = fresh;  // looks for further ones to wait for
     }
   }
-  /// All on the way but the last wait.
+  /// Marks all on the way but the last as waiting.
   static void on_way(const std::vector<std::size_t>& way, std::vector<char>& state) {
     state[way[way.size() - 2]] = under_way;
   }

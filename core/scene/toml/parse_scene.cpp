@@ -1,4 +1,4 @@
-// The tables of a scene, in the order of its members.
+// Tables of a scene, in the order of its members.
 
 #include <momenta/core/lagrangian/lagrangian_formulas.h>
 #include <momenta/core/scene/file_text.h>

@@ -80,7 +80,7 @@ BodySpec read_body(const Fields& table) {
         "kind = \"point\" })");
   }
 
-  // what is written out wins over the shape
+  // explicit values take precedence over the shape
   body.com = table.vector("com", {"m"}, centre_of(body.shape));
   body.inertia = table.has("inertia") ? read_inertia(table) : inertia_of(body.shape, body.mass);
   body.any_inertia = table.flag("any_inertia", false);

@@ -1,5 +1,5 @@
-// Points of a function from two columns of a file: names in its first line, numbers in the others,
-// commas between. Empty lines and those that begin with # are passed over.
+// Points of a function from two columns of a file: names in the first line, then numbers, commas
+// between. Empty lines and lines that begin with # are skipped.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/toml/read_tables.h>
@@ -15,7 +15,7 @@
 namespace momenta::reading {
 namespace {
 
-/// What stands between two commas, and where it begins.
+/// Text between two commas, and its place.
 struct Cell {
   std::string_view text;
   int column;  ///< from 1
@@ -25,7 +25,7 @@ class Columns {
  public:
   Columns(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
 
-  /// The cells of the next line; none: the file is at its end.
+  /// Reads the cells of the next line; none at the end of the file.
   bool next() {
     while (from_ < text_.size()) {
       ++line_;
@@ -39,7 +39,7 @@ class Columns {
     }
     return false;
   }
-  /// Which column has this name. @pre the first line was read
+  /// Index of the column of this name. @pre the first line was read
   std::size_t named(std::string_view name) const {
     std::vector<std::string_view> names;
     for (const Cell& c : cells) names.push_back(c.text);

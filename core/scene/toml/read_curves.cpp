@@ -10,7 +10,6 @@
 namespace momenta::reading {
 namespace {
 
-/// The keys of one kind of curve.
 CurveSpec read_curve(const Fields& table, const std::string& kind) {
   CurveSpec curve;
   curve.kind = kind;

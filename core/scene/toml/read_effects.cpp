@@ -1,4 +1,4 @@
-// [[drive]] and [[force]]: what acts on the mechanism.
+// [[drive]] and [[force]].
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
@@ -12,7 +12,7 @@
 namespace momenta::reading {
 namespace {
 
-/// A formula, which read_formulas() reads when the whole scene is known.
+/// A formula as text, read by read_formulas() once the whole scene is known.
 std::string read_formula(const Fields& table, std::string_view key) {
   const std::string text = table.text(key);
   if (text.empty()) table.fail_key(key, "is empty, expected a formula");
@@ -26,7 +26,7 @@ DriveSpec read_drive(const Fields& table) {
   drive.at = table.at();
   drive.kind = drive_kinds.at(read_kind(table, drive_kinds));
 
-  // the unit is that of what is driven, rad or m, which is not known here
+  // the unit of the driven number, rad or m, is not known here
   constexpr Quantity coordinate{};
   const auto allow = [&](std::vector<std::string_view> keys) {
     keys.insert(keys.end(), {"joint", "loop", "coordinate", "origin", "kind"});
@@ -72,14 +72,14 @@ DriveSpec read_drive(const Fields& table) {
       table.refuse("coordinate", "is given beside origin, expected one of them");
     }
   }
-  if (drive.kind == "formula") return drive;  // read_formulas() judges it
+  if (drive.kind == "formula") return drive;  // judged by read_formulas()
   if (const std::string fault = law_fault(drive); !fault.empty()) table.fail_at(table.at(), fault);
   return drive;
 }
 
 namespace {
 
-/// The formula in `law`, and none of the keys in whose place it stands; empty: there is none.
+/// The formula in `law`, without the keys that it replaces; empty: none.
 std::string read_law(const Fields& table, std::initializer_list<std::string_view> instead_of) {
   if (!table.has("law")) return "";
   for (const std::string_view key : instead_of)

@@ -1,4 +1,4 @@
-// Functions, and formulas of forces, loops, drives and events, read when the whole scene is known.
+// Functions, and formulas of forces, loops, drives and events, read once the whole scene is known.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
@@ -12,7 +12,7 @@
 namespace momenta::reading {
 namespace {
 
-/// The value of a key "law" or "force[1]".
+/// The value of a key, "law" or "force[1]".
 const Value& value_at(const Fields& table, const std::string& key) {
   const std::size_t bracket = key.find('[');
   const Value& value = *table.find(key.substr(0, bracket));
@@ -20,7 +20,7 @@ const Value& value_at(const Fields& table, const std::string& key) {
   return value.items[static_cast<std::size_t>(key[bracket + 1] - '0')];
 }
 
-/// Reads one by read(text) and leaves it with numbers in place of parameters.
+/// Reads a formula by read(text); its text then has numbers in place of parameters.
 template <class Read>
 Formula read_at(const Fields& table, const std::string& key, std::string& text, Scene& scene,
                 Read&& read) {
@@ -35,11 +35,11 @@ Formula read_at(const Fields& table, const std::string& key, std::string& text, 
   }
 }
 
-/// Where a place of "(left) - (right)" stands in "left = right", of which it was made.
+/// The place in "left = right" of a place in "(left) - (right)", made from it.
 std::size_t place_as_typed(const std::string& typed, const std::string& read, std::size_t place) {
   if (typed == read) return place;
-  const std::size_t left = read.size() - typed.size();  // what ") - (" and the brackets add
-  std::size_t sign = 0;                                 // of '='
+  const std::size_t left = read.size() - typed.size();  // added by ") - (" and the brackets
+  std::size_t sign = 0;                                 // place of '='
   while (sign < typed.size() && typed[sign] == read[sign + 1]) ++sign;
   return std::min(typed.size(), place <= sign + 1 ? std::max<std::size_t>(place, 1) - 1
                                                   : place - std::min(place, left - 1));
@@ -107,7 +107,7 @@ void read_formulas(const Fields& root, Scene& scene) {
     loop.equation = formula.text;
   }
   which = 0;
-  if (!scene.lagrangian)  // whose formulas have names of their own (lagrangian_formulas.h)
+  if (!scene.lagrangian)  // its formulas have names of their own (lagrangian_formulas.h)
     for (const Fields& table : root.tables("event", "event")) {
       std::string& text = scene.events[which++].when.text;
       const Formula formula =

@@ -24,8 +24,8 @@ std::vector<double> read_state(const Fields& table, std::string_view key, std::s
   return state;
 }
 
-/// The last four of a position are a quaternion: normalised here when nearly so, so that no solver
-/// meets a scaled one.
+/// Normalises the quaternion, the last four numbers of a position, when nearly of unit length, so
+/// that no solver meets a scaled one.
 void normalise_quaternion(const Fields& table, std::vector<double>& position) {
   if (position.size() < 4) return;
   Eigen::Map<Eigen::Vector4d> quaternion(position.data() + position.size() - 4);

@@ -15,7 +15,7 @@ FormulaSpec formula_of(const Fields& table, std::string_view key) {
   return formula;
 }
 
-/// As many entries as coordinates.
+/// The list, required to have one entry for each coordinate.
 template <class List>
 List of_size(const Fields& table, std::string_view key, List list, std::size_t size) {
   if (list.size() != size)
@@ -53,7 +53,7 @@ LagrangianSpec::Constraint read_constraint(const Fields& table) {
   LagrangianSpec::Constraint c;
   c.at = table.at();
   c.name = table.text("name");
-  (void)table.text("equation");  // must be there
+  (void)table.text("equation");  // required
   c.equation = formula_of(table, "equation");
   const std::string unit = table.text("unit", "m");
   if (unit != "m" && unit != "rad")

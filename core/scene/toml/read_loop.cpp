@@ -1,4 +1,4 @@
-// [[loop]], and the sums of coordinates that couplers and coordinate springs are of.
+// [[loop]], and sums of coordinates for couplers and coordinate springs.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/shapes.h>
@@ -27,7 +27,7 @@ void read_sum(const Fields& table, std::vector<std::string>& joints, std::vector
 
 namespace {
 
-/// The keys of a coupler, which ties coordinates and no bodies.
+/// Keys of a coupler, which ties coordinates and no bodies.
 void read_coupler(const Fields& table, LoopSpec& loop) {
   table.allow({"name", "kind", "joints", "coordinates", "ratios", "powers", "offset"});
   loop.name = table.text("name");
@@ -70,8 +70,8 @@ std::string as_difference(const Fields& table, const std::string& text) {
   return "(" + text.substr(0, sign) + ") - (" + text.substr(sign + 1) + ")";
 }
 
-/// The keys of an equation, of positions or of velocities; its names are looked up once the whole
-/// scene is known.
+/// Keys of an equation of positions or of velocities; its names are looked up once the whole scene
+/// is known.
 void read_equation(const Fields& table, LoopSpec& loop) {
   table.allow({"name", "kind", "equation"});
   loop.name = table.text("name");

@@ -1,6 +1,6 @@
 #pragma once
-// One function per table of the scene format. Each checks keys, types and the values which can be
-// judged alone; what concerns several tables is left to validate().
+// One function per table of the scene format. Each checks keys, types and values by themselves;
+// validate() checks what concerns several tables.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/toml/fields.h>
@@ -14,9 +14,9 @@ namespace momenta::reading {
 
 BodySpec read_body(const Fields& table);
 JointSpec read_joint(const Fields& table);
-/// `drives`: those of the scene, which may stand for numbers of the loop.
+/// `drives`: drives of the scene, which may replace numbers of the loop.
 LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives);
-/// What a slot, a cam and a rack have beside their kind.
+/// Keys of slots, cams, racks and rolling loops beside their kind.
 void read_slot(const Fields& table, LoopSpec& loop);
 void read_cam(const Fields& table, LoopSpec& loop);
 void read_rack(const Fields& table, LoopSpec& loop);
@@ -24,7 +24,7 @@ void read_rolling(const Fields& table, LoopSpec& loop);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
 FunctionSpec read_function(const Fields& table);
-/// Of a function given by `file`: its points from the columns `x` and `y` of that file.
+/// Points of a function from the columns `x` and `y` of its `file`.
 void read_columns(const Fields& table, FunctionSpec& function);
 MarkerSpec read_marker(const Fields& table);
 EventSpec read_event(const Fields& table);
@@ -32,28 +32,27 @@ VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
 LagrangianSpec read_lagrangian(const Fields& table);
 
-/// The formulas of forces, drives and events, of which the tables above keep the text: judged, with
-/// numbers in place of parameters. `root` is the scene's table. @pre parameters, joints, markers
-/// and forces of the scene are read
+/// Checks formulas of forces, drives and events, kept as text so far, and puts numbers in place of
+/// parameters. `root`: the scene's table. @pre parameters, joints, markers and forces of the scene
+/// are read
 void read_formulas(const Fields& root, Scene& scene);
 
-/// The value of `key`, one of `kinds`; else fails with the kinds there are. `others` are those of
-/// another table, whose name the sentence says when they are asked for here. @return its index in
-/// `kinds`
+/// The index in `kinds` of the value of `key`; else fails with the kinds there are. `others`: kinds
+/// of another table, which the sentence then names.
 std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds,
                       std::string_view key, std::span<const std::string_view> others = {},
                       std::string_view table_of_others = {});
-/// The same of the key `kind`.
+/// The same for the key `kind`.
 inline std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds) {
   return read_kind(table, kinds, "kind");
 }
 
-/// joints, coordinates and ratios of a coupler or a coordinate spring.
+/// Reads joints, coordinates and ratios of a coupler or a coordinate spring.
 void read_sum(const Fields& table, std::vector<std::string>& joints, std::vector<int>& coordinates,
               std::vector<double>& ratios);
 
-/// limits = [least, largest] of a joint or of a force along a length, in `unit`, and its stops,
-/// that push back by `force`.
+/// Reads limits = [least, largest] of a joint or of a force along a length, in `unit`, and stops,
+/// which push back by `force`.
 template <class Spec>
 void read_limits(const Fields& table, const std::string& unit, const std::string& force,
                  Spec& spec) {
@@ -82,7 +81,7 @@ struct Origins {
 };
 Origins read_origins(const Fields& table);
 
-/// The bodies and points of a joint, of a loop between two bodies, or of a force between them.
+/// Reads bodies and points of a joint, of a loop or force between two bodies.
 template <class Spec>
 void read_ends(const Fields& table, Spec& spec) {
   spec.parent = table.text("parent", spec.parent);
@@ -96,7 +95,7 @@ void read_ends(const Fields& table, Spec& spec) {
 /// .. }; rpy means Rz(yaw) Ry(pitch) Rx(roll).
 Eigen::Quaterniond read_rotation(const Fields& table);
 
-/// What turns the frame of a joint or a loop, and its axes.
+/// Reads rotation and axes of the frame of a joint or a loop.
 template <class Spec>
 void read_axes(const Fields& table, Spec& spec) {
   spec.rotation = read_rotation(table);

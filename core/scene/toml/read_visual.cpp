@@ -1,4 +1,4 @@
-// [[visual]]: solids to be drawn.
+// [[visual]]: solids that are drawn.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/toml/read_tables.h>

@@ -17,7 +17,7 @@ std::string_view name_of(Value& table) {
   return name && name->type == Value::Type::text ? std::string_view(name->text) : "";
 }
 
-/// One way through a scene's values, key by key.
+/// A place among a scene's values, followed key by key.
 class Way {
  public:
   explicit Way(const Setting& setting) : setting_(setting), rest_(setting.place) {}
@@ -28,7 +28,7 @@ class Way {
     at.number = setting_.value;
   }
 
-  /// Where the number, or a formula of one, stands; a key that the text leaves out is added.
+  /// The number at the place, or its formula; a missing key is added.
   Value& find_in(Value& root) {
     Value* at = &root;
     if (Value* parameters = find(root, "parameters");
@@ -49,13 +49,13 @@ class Way {
     if (!is_number(*at) && !formula) refuse("more keys", at->type);
     return *at;
   }
-  /// @throws std::invalid_argument where the text left it out
+  /// @throws std::invalid_argument where the key was added
   void expect_there() const {
     if (added_) fail("the scene leaves it out, expected a number that it has");
   }
 
  private:
-  /// Whether a text may stand for a number; others are names and words.
+  /// Whether a text may stand for a number; other texts are names and words.
   static bool is_formula(Value& root, const std::string& text) {
     std::vector<std::string> names;
     if (const Value* parameters = find(root, "parameters"))
@@ -97,7 +97,7 @@ class Way {
     return key;
   }
 
-  /// The table of this name; names may have dots in them, and of several the longest counts.
+  /// The table of this name; names may have dots, and the longest that fits counts.
   Value& named(Value& list) {
     Value* best = nullptr;
     std::size_t length = 0;

@@ -4,8 +4,8 @@
 
 namespace momenta::reading {
 
-/// Puts the numbers in their places. A key that the text leaves out is added to its table, for the
-/// reader to judge. @throws std::invalid_argument
+/// Puts numbers in their places. Missing keys are added, for the reader to judge. @throws
+/// std::invalid_argument
 void set_numbers(Value& root, const std::vector<Setting>& settings);
 
 }  // namespace momenta::reading

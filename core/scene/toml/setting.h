@@ -9,18 +9,18 @@
 
 namespace momenta {
 
-/// A number in place of the one that a scene's text has, or leaves out.
+/// A number that replaces or adds one in a scene's text.
 struct Setting {
-  /// KIND.NAME.KEY of a table with a name, KEY or TABLE.KEY of the others; an element of an array
-  /// by its number: "body.crank.mass", "loop.E2.origin.parent.0", "gravity.1", "run.end"; the name
-  /// of a parameter, in place of its number or formula. SI units.
+  /// KIND.NAME.KEY of a table with a name, KEY or TABLE.KEY of others; an element of an array by
+  /// its number: "body.crank.mass", "loop.E2.origin.parent.0", "gravity.1", "run.end"; or the name
+  /// of a parameter. SI units.
   std::string place;
   double value = 0;
 };
 
-/// The scene of a TOML text with other numbers in it; as parse_scene in every other respect.
-/// @throws std::invalid_argument for a place that the scene does not have, one sentence; SceneError
-/// for what the scene then is.
+/// The scene of a TOML text with these numbers in it; otherwise as parse_scene. @throws
+/// std::invalid_argument for a place that the scene does not have, one sentence; SceneError for
+/// faults of the resulting scene.
 Scene parse_scene(std::string_view text, const std::string& file,
                   const std::vector<Setting>& settings);
 

@@ -1,5 +1,5 @@
 #pragma once
-// TOML in the making, and what several kinds of tables have alike.
+// TOML text as it is written, and parts common to several kinds of tables.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/text/near_name.h>
@@ -12,7 +12,7 @@
 
 namespace momenta {
 
-/// Tables with keys that differ from their default.
+/// Writes tables, with keys that differ from their default.
 class TomlText {
  public:
   std::string text;
@@ -36,7 +36,7 @@ class TomlText {
       put("rotation", "{ quaternion = " + list({r.w(), r.x(), r.y(), r.z()}) + " }");
   }
 
-  /// TOML's whole numbers have no minus zero and end at 2^63.
+  /// Digits of a number; TOML's integers have no minus zero and end at 2^63.
   static std::string digits(double value) {
     const bool large = std::abs(value) >= 1e15, minus_zero = value == 0 && std::signbit(value);
     std::string text = reading::digits(value);
@@ -75,7 +75,7 @@ class TomlText {
   }
 };
 
-/// Two bodies and a point on each.
+/// Writes two bodies and a point on each.
 template <class Edge>
 void write_ends(const Edge& e, TomlText& t) {
   if (e.parent != "ground") t.word("parent", e.parent);
@@ -89,7 +89,7 @@ void write_ends(const Edge& e, TomlText& t) {
                         (two ? "child = " + three(e.origin_child) : std::string()) + " }");
 }
 
-/// Limits and stops of a joint or of a force along a length.
+/// Writes limits and stops of a joint or of a force along a length.
 template <class Spec>
 void write_limits(const Spec& spec, TomlText& t) {
   if (spec.limits) t.numbers("limits", {(*spec.limits)[0], (*spec.limits)[1]});
@@ -98,7 +98,7 @@ void write_limits(const Spec& spec, TomlText& t) {
   t.number("stop_width", spec.stop_width, Spec{}.stop_width);
 }
 
-/// Σ ratios q of joints.
+/// Writes Σ ratios q of joints.
 template <class Sum>
 void write_sum(const Sum& sum, TomlText& t) {
   t.put("joints", TomlText::words(sum.joints));

@@ -12,9 +12,8 @@ namespace momenta::reading {
 }
 }  // namespace momenta::reading
 
-// toml++ is compiled into this file: the installed library then asks its users for no further one.
-// Its assertions stay on and throw, as some of them fail on malformed text ("[&"); see check_text
-// for those which are known, and told with their place.
+// toml++ is compiled here alone: the installed library needs no further one. Its assertions throw,
+// as some fail on malformed text ("[&"); check_text reports known ones with their place.
 #undef NDEBUG
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
@@ -34,8 +33,8 @@ bool before(Location a, Location b) {
   return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 
-/// Copies a node. The recursion is as deep as the text is nested, which check_text has bounded.
-/// `otherwise` is the place of the key, for tables that no text of their own opens (dotted keys).
+/// Copies a node. Recursion depth is that of the text, bounded by check_text. `otherwise`: place of
+/// the key, for tables without text of their own (dotted keys).
 Value copied(const toml::node& node, Location otherwise) {
   Value value;
   value.at = node.source().begin.line > 0 ? place(node.source()) : otherwise;
@@ -73,7 +72,7 @@ Value copied(const toml::node& node, Location otherwise) {
         const Location at = place(key.source());
         value.entries.push_back({std::string(key.str()), at, copied(item, at)});
       }
-      // toml++ sorts by key; messages should speak of the first mistake in the file
+      // toml++ sorts by key; messages should be on the first mistake in the file
       std::sort(value.entries.begin(), value.entries.end(),
                 [](const Entry& a, const Entry& b) { return before(a.at, b.at); });
       break;
@@ -127,7 +126,7 @@ std::string_view described(Value::Type type) {
 
 namespace {
 
-/// What toml++ says, and what was expected where it does not say so itself.
+/// The sentence of toml++, with what was expected where it does not say so.
 std::string in_words(std::string_view said) {
   return "not valid TOML: " + on_one_line(said) +
          (said.find("expected") == said.npos ? ", expected key = value, [table] or [[table]]" : "");

@@ -1,6 +1,5 @@
 #pragma once
-// TOML as plain values with their places. The parser behind it, toml++, is seen by toml_values.cpp
-// alone.
+// TOML as plain values with their places. Only toml_values.cpp includes the parser, toml++.
 
 #include <momenta/core/scene/scene.h>
 
@@ -12,7 +11,7 @@ namespace momenta::reading {
 
 struct Entry;
 
-/// One TOML value. Only the members which belong to its type are filled.
+/// One TOML value; members of other types are empty.
 struct Value {
   enum class Type { text, integer, number, boolean, date, time, date_time, array, table };
   Type type = Type::table;
@@ -30,21 +29,21 @@ struct Entry {
   Value value;
 };
 
-/// The value of a key of a table; null: it has none.
+/// The value of a key of a table; null: none.
 const Value* find(const Value& table, std::string_view key);
 Value* find(Value& table, std::string_view key);
 
-/// Whether it is one, whole or not.
+/// Whether a value is a number, whole or not.
 bool is_number(const Value& value);
 
-/// What a value is, for "... is a string, expected ...".
+/// The type of a value in words, for "... is a string, expected ...".
 std::string_view described(Value::Type type);
 
 /// The root table of a TOML text. `file` only names it in messages.
-/// @throws SceneError for whatever is no UTF-8, no TOML, or beyond the limits of check_text.
+/// @throws SceneError for text that is no UTF-8, no TOML, or beyond the limits of check_text.
 Value parse_toml(std::string_view text, const std::string& file);
 
-/// Refuses, before any parser sees it, text that is no scene whatever it says:
+/// Refuses, before any parser, text that cannot be a scene:
 ///   - empty, over 64 MiB, not UTF-8, or holding NUL
 ///   - brackets nested, or keys dotted, more than 16 deep (a scene needs 3; the parser and the
 ///     destructors recurse over this depth)

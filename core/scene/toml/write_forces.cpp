@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-/// Three components, each a number or a formula.
+/// Writes three components, each a number or a formula.
 void write_components(const char* key, const Eigen::Vector3d& numbers,
                       const std::array<std::string, 3>& formulas, TomlText& t) {
   if (std::all_of(formulas.begin(), formulas.end(), [](const auto& f) { return f.empty(); }))

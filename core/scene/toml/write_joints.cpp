@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What joints and loops have alike. `has_axis`: of this kind.
+/// Writes the parts common to joints and loops. `has_axis`: its kind has one.
 template <class Edge>
 void write_frames(const Edge& e, bool has_axis, TomlText& t) {
   write_ends(e, t);
@@ -52,7 +52,7 @@ std::string outline(const CurveSpec& curve) {
   return text + " }";
 }
 
-/// What loops with curves have beside their frames.
+/// Writes the keys of loops with curves beside their frames.
 void write_curves(const LoopSpec& loop, TomlText& t) {
   if (loop.kind == LoopKind::slot && !loop.curve.kind.empty()) {
     t.word("curve", loop.curve.kind);

@@ -10,7 +10,7 @@ void write_body(const BodySpec& body, TomlText& t) {
   t.open("[[body]]");
   t.word("name", body.name);
   t.put("mass", TomlText::digits(body.mass));
-  // what a shape would give is written out, so that nothing is computed once more
+  // com and inertia of a shape are written out: nothing is computed anew
   const bool shaped = !body.shape.kind.empty();
   if (shaped || !TomlText::same(body.com, Vector3d::Zero()))
     t.numbers("com", {body.com[0], body.com[1], body.com[2]});

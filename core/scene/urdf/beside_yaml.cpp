@@ -1,4 +1,4 @@
-// What a YAML file beside a URDF says, as the files of example-parallel-robots do:
+// The YAML file beside a URDF, as in example-parallel-robots:
 //
 //   closed_loop: [[frame, frame], ...]   loops
 //   type: ['3d' | '6d', ...]             a point, or a weld
@@ -6,9 +6,9 @@
 //   joint_type: [SPHERICAL | FIXED | UJOINT_XY | ... | CARDAN, ...]
 //   name_mot: [joint, ...]               joints with a motor
 //
-// A joint of another type keeps the origin that the URDF gives it, and its axes are those of that
-// origin: UJOINT_YZ turns about y, which the parent holds, then about z, which the child holds;
-// CARDAN is UJOINT_XY; FIXED welds the child where q = 0 has it.
+// A joint of another type keeps the origin of the URDF, and its axes are those of the origin:
+// UJOINT_YZ turns about y, held by the parent, then about z, held by the child; CARDAN is
+// UJOINT_XY; FIXED welds the child where it is at q = 0.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
@@ -31,7 +31,7 @@ Location place(const YAML::Mark& mark) {
   return mark.is_null() ? Location{} : Location{mark.line + 1, mark.column + 1};
 }
 
-/// The file, with the scene whose joints and links it names.
+/// The file, with the scene of its joints and links.
 class YamlBeside {
  public:
   YamlBeside(const std::filesystem::path& file, const YAML::Node& root, const Scene& scene)
@@ -46,7 +46,7 @@ class YamlBeside {
       momenta::reading::fail(name_, {}, std::string("no key ") + key + ", expected a list");
     return items(found, std::string(key) + " is no list, expected one");
   }
-  /// Two lists, entry by entry. Empty: the file has neither.
+  /// The pairs of two lists. Empty: the file has neither.
   std::vector<std::pair<YAML::Node, YAML::Node>> pairs(const char* key, const char* type) const {
     if (!root_[key] && !root_[type]) return {};
     const auto one = list(key), two = list(type);
@@ -69,7 +69,7 @@ class YamlBeside {
     if (!node.IsScalar()) fail(node, "a list or a map, expected a word");
     return node.Scalar();
   }
-  /// The link whose frame it is: the child of the joint of that name, or the link.
+  /// The link of a frame: the child of the joint of that name, or the link itself.
   std::string link(const YAML::Node& node) const {
     const std::string frame = word(node);
     std::vector<std::string_view> known;
@@ -84,7 +84,7 @@ class YamlBeside {
     fail(node, "closed_loop has " + in_quotes(frame) + ", expected a joint or a link of " +
                    on_one_line(scene_.file) + did_you_mean(frame, known));
   }
-  /// The place of a joint among those of the scene.
+  /// Index of a joint in the scene.
   std::size_t joint(const YAML::Node& node, const char* key) const {
     const std::string name = word(node);
     std::vector<std::string_view> known;
@@ -95,7 +95,7 @@ class YamlBeside {
     fail(node, std::string(key) + " has " + in_quotes(name) + ", expected a joint of " +
                    on_one_line(scene_.file) + did_you_mean(name, known));
   }
-  /// Other keys, and one that is there twice: yaml-cpp takes the first of them.
+  /// Refuses unknown keys, and repeated ones, of which yaml-cpp takes the first.
   void refuse_other_keys() const {
     std::set<std::string> met;
     for (const auto& entry : root_) {
@@ -114,7 +114,7 @@ class YamlBeside {
   const Scene& scene_;
 };
 
-/// Gives a joint of a URDF the type that the YAML file says.
+/// Gives a joint of a URDF its type in the YAML file.
 void retype(JointSpec& joint, const std::string& type, const YamlBeside& file, const YAML::Node& at,
             Remarks& remarks) {
   const auto axis_of = [&](char letter) -> int {
@@ -177,15 +177,15 @@ void read_loops(const YamlBeside& file, Scene& scene, FreeNames& edges) {
   }
 }
 
-/// `asked`: by the user, so that a file without loops is a mistake.
+/// `asked`: the user named the file, so that one without loops is a mistake.
 void read_yaml(const std::filesystem::path& path, bool asked, Scene& scene, FreeNames& edges,
                Remarks& remarks) try {
   const YAML::Node root = YAML::Load(text_of(path));
   const auto has = [&](std::string_view key) {
     return root.IsMap() && root[std::string(key)].IsDefined();
   };
-  // A file for something else has none of these keys; one with some of them and a misspelt one
-  // would be another mechanism.
+  // A file for another purpose has none of these keys; one with a misspelt key would give another
+  // mechanism.
   if (!asked && std::none_of(keys.begin(), keys.end(), has))
     return remarks.left_out("the YAML file beside it, which has no closed_loop");
   if (!root.IsMap()) fail(path.string(), {}, "no map of keys, expected closed_loop and type");

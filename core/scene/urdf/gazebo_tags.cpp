@@ -1,13 +1,13 @@
-// <gazebo>: what a URDF says to Gazebo. Of that these change the mechanism:
+// <gazebo>: tags of a URDF for Gazebo. These change the mechanism:
 //
 //   <joint>, a joint of SDF between two links of the tree, which closes a loop;
-//   of a joint, by `reference`: springStiffness k and springReference r, a spring −k (q − r);
-//   of a link: turnGravityOff, or gravity false, which takes its weight back.
+//   for a joint, by `reference`: springStiffness k and springReference r, a spring −k (q − r);
+//   for a link: turnGravityOff, or gravity false, which cancels its weight.
 //
 // With P and C the poses of a <joint>'s parent and child at q = 0 and J that of its <pose> in the
 // child, the loop has the point o = C o_J, P⁻¹ o in the parent and C⁻¹ o in the child, and the
-// child's axes P⁻¹ C in the parent's. It is closed as the file draws it. <xyz> is a direction in
-// the model for versions of Gazebo that take a URDF as SDF 1.4, and in J for later ones.
+// child's axes P⁻¹ C in the parent's. It is closed in the pose of the file. <xyz> is a direction in
+// the model for versions of Gazebo that read a URDF as SDF 1.4, and in J for later ones.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/sdf/sdf_frames.h>
@@ -42,7 +42,7 @@ std::string link_named(const Node& end, const Scene& scene) {
   end.fail("is " + in_quotes(link) + ", expected the name of a link" + did_you_mean(link, names));
 }
 
-/// A link at q = 0, in the root's frame.
+/// Pose of a link at q = 0, in the root's frame.
 Pose at_zero(const std::string& link, const Scene& scene) {
   Pose pose;
   for (std::string at = link; at != "ground";) {
@@ -54,7 +54,7 @@ Pose at_zero(const std::string& link, const Scene& scene) {
   return pose;
 }
 
-/// The direction in <axis> or <axis2>, in the root's frame; `own`: the joint's.
+/// The direction in <axis> or <axis2>, in the root's frame; `own`: pose of the joint.
 Vector3d read_axis(const Node& axis, const Pose& own) {
   const Node xyz = axis.required("xyz");
   const Vector3d of_model = xyz.content_direction(), of_joint = own.turn * of_model;
@@ -70,7 +70,7 @@ Vector3d read_axis(const Node& axis, const Pose& own) {
       "in which they take; expected <use_parent_model_frame> in the <axis>");
 }
 
-/// What a loop does not have.
+/// Remarks on limits and dynamics, which loops do not have.
 void tell_dynamics(const Node& axis, Remarks& remarks) {
   if (const auto limit = axis.child("limit");
       limit && (limit->child("lower") || limit->child("upper")))
@@ -107,7 +107,7 @@ void close_loop(const Node& node, Scene& scene, FreeNames& edges, Remarks& remar
     if (loop.axis.cross(loop.axis2).norm() < parallel_slack)
       node.fail("has axes that are parallel, expected two directions");
   }
-  if (loop.child == "ground") {  // what does not move is the parent
+  if (loop.child == "ground") {  // the parent is the fixed side
     std::swap(loop.parent, loop.child);
     if (two) loop.axis.swap(loop.axis2);
   }
@@ -121,7 +121,7 @@ void close_loop(const Node& node, Scene& scene, FreeNames& edges, Remarks& remar
   scene.loops.push_back(loop);
 }
 
-/// False: nothing that is read.
+/// Reads one tag; false: it is none of these.
 bool read_part(const Node& part, const std::string& reference, Scene& scene, FreeNames& edges,
                Remarks& remarks) {
   if (part.name() == "joint" && part.has("type")) {
@@ -153,7 +153,7 @@ bool read_part(const Node& part, const std::string& reference, Scene& scene, Fre
 
 void read_gazebo_tag(const Node& tag, Scene& scene, FreeNames& edges, Remarks& remarks) {
   const std::string reference = tag.text("reference", "");
-  // As sdformat reads them: an attribute `value` stands for the text.
+  // As in sdformat, an attribute `value` replaces the text.
   Element whole_tag = tag.element();
   for (Element& part : whole_tag.children)
     if (const std::string* value = part.find("value")) part.text = *value;

@@ -1,5 +1,5 @@
-// The root of a URDF, the only link that is no joint's child, hangs on the ground: welded, or free
-// where that is asked for. URDF has no way to say which.
+// The root of a URDF, the only link that is no joint's child, is welded to the ground, or free
+// where asked for: URDF does not say which.
 
 #include <momenta/core/scene/urdf/urdf.h>
 #include <momenta/core/scene/validate.h>
@@ -18,7 +18,7 @@ bool is_ground(std::string text) {
   return text == "ground";
 }
 
-/// Where the name of a link stands: in an attribute, or in a <joint> of <gazebo> as text.
+/// Renames a link "ground" in attributes, and in the text of a <joint> of <gazebo>.
 void rename_in(Element& element) {
   for (Attribute& a : element.attributes)
     if ((a.name == "link" || a.name == "reference" ||
@@ -37,9 +37,10 @@ namespace {
 constexpr const char* loops_of_urdf =
     "; a loop is a <loop>, a <joint> in <gazebo>, or stands in a YAML file beside the URDF";
 
-/// @pre every joint's child is the child of no other one
+/// @pre every link is the child of one joint at most
 void expect_no_cycle(const std::map<std::string, const JointSpec*>& inward, const Scene& scene) {
-  std::map<std::string, const JointSpec*> seen;  // by link: the joint its walk inwards began at
+  std::map<std::string, const JointSpec*>
+      seen;  // by link: the joint at which its walk inwards began
   for (const JointSpec& start : scene.joints) {
     std::string link = start.child;
     for (auto in = inward.find(link); in != inward.end(); in = inward.find(link)) {
@@ -128,8 +129,8 @@ bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, 
 
 namespace {
 
-/// The joints from the root outwards fall into branches, one for each joint of the root that moves.
-/// Two branches are tied where a loop closes from one to the other, or to the root or the ground.
+/// The joints form branches, one for each moving joint of the root. Two branches are tied where a
+/// loop closes from one to the other, or to the root or the ground.
 class Branches {
  public:
   explicit Branches(const Scene& scene) {
@@ -140,7 +141,7 @@ class Branches {
     for (const LoopSpec& loop : scene.loops)
       if (ties_bodies(loop)) tie(of(loop.parent), of(loop.child));
   }
-  /// How many there are, those that are tied counted as one; none for those tied to the ground.
+  /// Number of branches, tied ones counted as one, those tied to the ground not at all.
   int count() const {
     int all = 0;
     for (const auto& [branch, to] : tied_) all += branch == to && !branch.empty();
@@ -148,7 +149,7 @@ class Branches {
   }
 
  private:
-  /// The link at which a branch begins; empty for the ground, and what is welded to it.
+  /// The link at which a branch begins; empty for the ground, and links welded to it.
   std::string of(const std::string& link) {
     std::vector<const JointSpec*> way;  // inwards, to a link whose branch is known
     for (std::string at = link; !begin_.contains(at); at = way.back()->parent)
@@ -174,7 +175,7 @@ class Branches {
 
   std::map<std::string, const JointSpec*> inward_;
   std::map<std::string, std::string> begin_{{"ground", ""}};
-  std::map<std::string, std::string> tied_;  ///< a branch to one it is tied to, or to itself
+  std::map<std::string, std::string> tied_;  ///< each branch to one it is tied to, or to itself
 };
 
 }  // namespace

@@ -2,9 +2,9 @@
 //
 //   I = n² I_rotor,  ½ I q̇² of kinetic energy,  n the rotor's angle over the joint's
 //
-// on the rate of the joint it drives. I_rotor stands in an <actuator> as <motorInertia> or
-// <rotorInertia>, n beside it or in the <transmission> as <mechanicalReduction>; or as
-// <drake:rotor_inertia> and <drake:gear_ratio>. n is 1 where it is not given.
+// on the rate of the joint it drives. I_rotor is in an <actuator> as <motorInertia> or
+// <rotorInertia>, n beside it or in the <transmission> as <mechanicalReduction>; or both as
+// <drake:rotor_inertia> and <drake:gear_ratio>. Default: n = 1.
 
 #include <momenta/core/scene/urdf/urdf.h>
 #include <momenta/core/text/near_name.h>
@@ -15,7 +15,7 @@
 namespace momenta::reading {
 namespace {
 
-/// A number as text of the element, or as its attribute `value`.
+/// A number in the text of the element, or in its attribute `value`.
 double value_of(const Node& node) {
   return node.has("value") ? node.number("value") : node.content_number();
 }
@@ -27,7 +27,7 @@ constexpr std::array<Names, 3> conventions{{{"motorInertia", "mechanicalReductio
                                             {"rotorInertia", "mechanicalReduction"},
                                             {"drake:rotor_inertia", "drake:gear_ratio"}}};
 
-/// n² I_rotor of one actuator [kg m² or kg]; nothing where no inertia is given.
+/// n² I_rotor of one actuator [kg m² or kg]; nothing without an inertia.
 std::optional<double> seen_inertia(const Node& actuator, const Node& transmission) {
   for (const Names& name : conventions) {
     const auto inertia = actuator.child(name.inertia);

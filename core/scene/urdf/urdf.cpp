@@ -64,7 +64,7 @@ BodySpec read_link(const Node& link, Remarks& remarks) {
   return body;
 }
 
-/// The joint of that name, which has one coordinate or none.
+/// The joint of that name, with at most one coordinate.
 const JointSpec& coordinate_of(const Node& mimic, const std::string& name, const Scene& scene) {
   const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
                                   [&](const JointSpec& j) { return j.name == name; });
@@ -81,8 +81,7 @@ const JointSpec& coordinate_of(const Node& mimic, const std::string& name, const
   return *joint;
 }
 
-/// q − multiplier · q_other = offset; nothing for a joint that is fixed. The q of a leader that is
-/// fixed is 0.
+/// q − multiplier · q_other = offset; nothing for a fixed joint. A fixed leader has q = 0.
 std::optional<LoopSpec> read_mimic(const Node& mimic, const std::string& joint, const Scene& scene,
                                    FreeNames& edges) {
   const std::string other = mimic.text("joint");
@@ -104,8 +103,8 @@ std::optional<LoopSpec> read_mimic(const Node& mimic, const std::string& joint, 
   return loop;
 }
 
-/// `lower` and `upper` of a revolute or prismatic joint; a range that is not one is left out, since
-/// files have 0, 0 where nothing is known.
+/// `lower` and `upper` of a revolute or prismatic joint; an empty range is left out, since files
+/// have 0, 0 where nothing is known.
 void read_limits(const Node& limit, const std::string& type, JointSpec& joint, Remarks& remarks) {
   const double lower = limit.number("lower", 0), upper = limit.number("upper", 0);
   if (type != "revolute" && type != "prismatic") {
@@ -152,7 +151,7 @@ JointSpec read_joint(const Node& node, Remarks& remarks) {
   return joint;
 }
 
-/// Refuses what xacro has not expanded: an element of its own, or an expression in an attribute.
+/// Refuses unexpanded xacro: its elements, or an expression in an attribute.
 void refuse_xacro(const Node& node) {
   const bool expression =
       std::any_of(node.element().attributes.begin(), node.element().attributes.end(),

@@ -1,4 +1,4 @@
-// The elements of URDF, with those of URDF+ and the tags that robots' files have beside them.
+// Elements of URDF and URDF+, and tags that files of robots have beside them.
 
 #include <momenta/core/scene/xml/known_elements.h>
 

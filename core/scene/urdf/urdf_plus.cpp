@@ -26,7 +26,7 @@ std::string link_of(const Node& end, const Scene& scene) {
   return link;
 }
 
-/// The joints from the ground to a link, inmost first; a cycle, refused elsewhere, ends it.
+/// Joints from the ground to a link, inmost first; ends at a cycle, refused elsewhere.
 std::vector<const JointSpec*> way_to(const std::string& link, const Scene& scene) {
   std::vector<const JointSpec*> way;
   std::string at = link;
@@ -43,8 +43,8 @@ std::vector<const JointSpec*> way_to(const std::string& link, const Scene& scene
 
 }  // namespace
 
-/// Frames 1 and 2, turned by R1 and R2 in their links, share the axis a. A scene's loop has its
-/// frame R in the parent and the axes of the child, so a child's axis R2 a and R = R1 R2ᵀ.
+/// Frames 1 and 2, turned by R1 and R2 in their links, share the axis a. A loop of a scene has its
+/// frame R in the parent and the axes of the child, hence the child's axis R2 a and R = R1 R2ᵀ.
 void read_loop_tag(const Node& node, Scene& scene, FreeNames& edges) {
   LoopSpec loop;
   loop.at = node.at();
@@ -62,7 +62,7 @@ void read_loop_tag(const Node& node, Scene& scene, FreeNames& edges) {
                                      : Eigen::Vector3d(Eigen::Vector3d::UnitX());
   if (has_axis(loop.kind)) loop.axis = two.turn * along;
   loop.rotation = one.turn * two.turn.conjugate();
-  if (loop.child == "ground") {  // what does not move is the parent
+  if (loop.child == "ground") {  // the parent is the fixed side
     std::swap(loop.parent, loop.child);
     std::swap(loop.origin_parent, loop.origin_child);
     loop.rotation = loop.rotation.conjugate();
@@ -71,8 +71,8 @@ void read_loop_tag(const Node& node, Scene& scene, FreeNames& edges) {
   scene.loops.push_back(loop);
 }
 
-/// ratio · Σ q − Σ q = 0, summed over the joints from the last link that both ends hang on to the
-/// predecessor and to the successor.
+/// ratio · Σ q − Σ q = 0, over the joints from the last common link of the ends to the predecessor
+/// and to the successor.
 void read_coupling_tag(const Node& node, Scene& scene, FreeNames& edges) {
   LoopSpec loop;
   loop.kind = LoopKind::coupler;

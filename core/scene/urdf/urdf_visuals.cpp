@@ -1,4 +1,4 @@
-// <visual> and <collision> of links as solids to be drawn.
+// <visual> and <collision> of links as drawn solids.
 
 #include <momenta/core/scene/urdf/urdf.h>
 #include <momenta/core/scene/xml/file_inside.h>
@@ -15,7 +15,7 @@ std::optional<Eigen::Vector3d> colour_in(const Node& material) {
   return Eigen::Vector3d(rgba[0], rgba[1], rgba[2]).cwiseMax(0).cwiseMin(1);
 }
 
-/// A mesh whose file is there and is one that is read; else false, with the reason as a plural.
+/// Takes a mesh with an existing file of a known kind; else false, with the reason as a plural.
 bool take_mesh(const Node& mesh, const std::string& file, VisualSpec& visual, std::string& why) {
   visual.kind = "mesh";
   visual.size = mesh.vector("scale", Eigen::Vector3d::Ones());
@@ -28,7 +28,7 @@ bool take_mesh(const Node& mesh, const std::string& file, VisualSpec& visual, st
   return why.empty();
 }
 
-/// The solid of a <visual> or <collision>; none: `why` has the reason.
+/// The solid of a <visual> or <collision>; none: the reason is in `why`.
 std::optional<VisualSpec> solid_of(const Node& part, const LinkDrawing& drawing, std::string& why) {
   why.clear();
   const auto geometry = part.child("geometry");
@@ -86,7 +86,7 @@ std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot, Remarks& re
     }
   };
   for (const Node& material : robot.children("material")) take(material);
-  // A link's material may be named by links that follow.
+  // Later links may name a link's material.
   for (const Node& link : robot.children("link"))
     for (const Node& visual : link.children("visual"))
       for (const Node& material : visual.children("material")) take(material);

@@ -17,12 +17,12 @@ bool lists(std::string_view words, std::string_view name) {
   return false;
 }
 
-/// A value that asks for nothing.
+/// Whether a value asks for nothing.
 bool idle(const std::string& text) {
   return text == "0" || text == "false" || text == "none" || text == "auto" || text == "disable";
 }
 
-/// What no mechanism depends on.
+/// Elements without effect on a mechanism.
 constexpr std::string_view pictures = "visual collision material texture camera light skin hfield";
 
 class Rows {
@@ -40,7 +40,7 @@ class Rows {
   std::map<std::string_view, const KnownElement*, std::less<>> rows_;
 };
 
-/// The name of the row that `word` is misspelt for; empty: none.
+/// The known name of which `word` is a misspelling; empty: none.
 std::string_view meant(const std::string& word, const KnownElement& row) {
   std::string_view nearest;
   std::size_t least = most_edits + 1;

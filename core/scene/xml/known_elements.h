@@ -1,7 +1,7 @@
 #pragma once
-// What a format has, element by element, and what its reader does with it; so that nothing of a
-// file is dropped without a remark. What the readers themselves take, refuse or tell stands under
-// `taken`; what has no effect on motion is silent; what has one and is left out is told here.
+// The elements of a format, and what its reader does with them, so that nothing of a file is
+// dropped without a remark. `taken`: read, refused or reported by the readers; `silent`: without
+// effect on motion; `told`: left out, with a remark.
 
 #include <momenta/core/scene/xml/remarks.h>
 #include <momenta/core/scene/xml/xml_node.h>
@@ -12,23 +12,23 @@
 
 namespace momenta::reading {
 
-/// An element by its name, or as "around/name" where the same name means another thing there. Its
-/// attributes and the elements in it by name, parted by blanks; an element that no list has is
-/// left out and told, an attribute that no list has is told as not known.
+/// An element by its name, or as "around/name" where the name means another thing there. Names of
+/// its attributes and elements, separated by blanks; unlisted elements are left out with a remark,
+/// unlisted attributes reported as not known.
 struct KnownElement {
   std::string_view name;
   std::string_view taken, silent, told;
 };
 
-/// Refuses an element that is misspelt: one that its surroundings do not have, and which is near to
-/// one that they have. Not in what is drawn or touched alone. Before a model is read: what a reader
-/// says of the rest would mislead. @throws SceneError
+/// Refuses misspelt elements: unknown in their surroundings, but near to a known one. Not within
+/// drawings and contacts. To call before a model is read: errors on the rest would mislead. @throws
+/// SceneError
 void refuse_misspelt(const Node& root, std::span<const KnownElement> known);
 
-/// Tells what `root` and all in it have that `known` does not list as taken or silent. Elements
-/// without a row of their own are not looked into; attributes of a name space are silent, values of
-/// 0, false, none, auto and disable are too, and so is what a reader itself put in, by names with a
-/// blank. O(size of the elements · log of the table)
+/// Reports what `root` and all in it have that `known` does not list as taken or silent. Elements
+/// without a row are not entered. Silent too: attributes of a name space, values 0, false, none,
+/// auto and disable, names with a blank, which readers put in. O(size of the elements · log of the
+/// table)
 void tell_unread(const Node& root, std::span<const KnownElement> known, Remarks& remarks);
 
 /// The tables of the formats.

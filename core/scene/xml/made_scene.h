@@ -1,5 +1,5 @@
 #pragma once
-// What the readers of robots share: names that are free, and bodies with their inertia.
+// Common to the readers of robots: free names, and bodies with their inertia.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/xml/remarks.h>
@@ -10,11 +10,11 @@
 
 namespace momenta::reading {
 
-/// FreeNames taken so far among joints and loops, or among bodies.
+/// Names taken so far among joints and loops, or among bodies.
 class FreeNames {
  public:
   void take(const std::string& name) { taken_.insert(name); }
-  /// `wish`, or with a number behind it where that is taken; taken from now on.
+  /// `wish`, or with a number behind it where that is taken; then taken too.
   std::string free(const std::string& wish);
 
  private:
@@ -22,16 +22,16 @@ class FreeNames {
 };
 
 /// Gives a body its mass, and its inertia about the centre of mass, body axes. One that no rigid
-/// body has is taken as it is, and said so. @throws SceneError for a negative mass
+/// body has is kept, with a remark. @throws SceneError for a negative mass
 void weigh(BodySpec& body, double mass, const Eigen::Vector3d& com, const Eigen::Matrix3d& inertia,
            const Node& node, Remarks& remarks);
 
-/// The constant force −m g at a point of a body, which takes back the weight of a mass m there;
-/// none where that is zero.
+/// Adds the constant force −m g at a point of a body, which cancels the weight of a mass m there;
+/// none for zero.
 void take_back_weight(const std::string& body, const Eigen::Vector3d& point, double mass,
                       const Location& at, Scene& scene);
 
-/// xx, yy, zz, xy, xz, yz as a matrix.
+/// The matrix of xx, yy, zz, xy, xz, yz.
 Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz, double yz);
 
 }  // namespace momenta::reading

@@ -1,6 +1,6 @@
 #pragma once
-// What a reader leaves out or takes in a way to be known, counted: one sentence a kind, in the
-// order in which they were met.
+// Remarks of a reader on what it leaves out or interprets: one counted sentence a kind, in order of
+// occurrence.
 
 #include <exception>
 #include <string>
@@ -12,10 +12,9 @@ namespace momenta::reading {
 class Remarks {
  public:
   void count(const std::string& sentence);
-  /// A sentence of its own, without a count.
+  /// Adds a sentence without a count.
   void say(const std::string& sentence) { counts_.emplace_back(sentence, 0); }
-  /// A shape or a colour that is wrong in the file. Nothing moves by it: it is left out of
-  /// pictures.
+  /// Counts a shape or colour with a fault. It has no effect on motion: it is left out of pictures.
   void not_drawn(const std::exception& wrong);
   /// `kind` is a plural: "joint limits".
   void left_out(const std::string& kind) { count("left out: " + kind); }

@@ -126,7 +126,7 @@ Eigen::Vector3d Node::vector(std::string_view attribute, const Eigen::Vector3d& 
 
 namespace {
 
-/// Of unit length; zero stays zero.
+/// The vector at unit length; zero stays zero.
 Eigen::Vector3d of_unit_length(const Eigen::Vector3d& along) {
   const double largest = along.lpNorm<Eigen::Infinity>();
   return largest == 0 || is_unit(along) ? along : (along / largest).normalized();

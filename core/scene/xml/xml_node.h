@@ -1,5 +1,5 @@
 #pragma once
-// An element read by type. Every complaint names the file, the line, the owner of the element
+// An XML element, read by type. Every complaint names the file, the line, the owner of the element
 // ("link 'arm'"), the attribute, what was found and what was expected.
 
 #include <momenta/core/scene/scene.h>
@@ -17,7 +17,7 @@ namespace momenta::reading {
 
 class Node {
  public:
-  /// `owner` opens every sentence; empty: the element's own name does.
+  /// `owner` opens every sentence; empty: the element's own name.
   Node(const Element& element, std::string owner, const std::string& file)
       : element_(&element), owner_(std::move(owner)), file_(&file) {}
 
@@ -28,7 +28,7 @@ class Node {
   const std::string& file() const { return element_->file ? element_->file->name : *file_; }
   bool has(std::string_view attribute) const { return element_->find(attribute) != nullptr; }
 
-  // Without `otherwise` the attribute must be there. Numbers are finite; lists are parted by white
+  // Attributes without `otherwise` are required. Numbers are finite; lists are separated by white
   // space.
   std::string text(std::string_view attribute) const;
   std::string text(std::string_view attribute, const std::string& otherwise) const;
@@ -39,22 +39,22 @@ class Node {
   std::vector<double> numbers(std::string_view attribute, std::size_t count) const;
   Eigen::Vector3d vector(std::string_view attribute) const;
   Eigen::Vector3d vector(std::string_view attribute, const Eigen::Vector3d& otherwise) const;
-  /// The same, of unit length.
+  /// The same at unit length.
   Eigen::Vector3d direction(std::string_view attribute, const Eigen::Vector3d& otherwise) const;
-  /// One of `words`, by its place among them.
+  /// Index in `words` of the attribute.
   std::size_t word(std::string_view attribute, std::span<const std::string_view> words,
                    std::size_t otherwise) const;
 
-  // The text of the element itself, read in the same way.
+  // The text of the element itself, read likewise.
   std::string content() const;
   double content_number() const;
   std::vector<double> content_numbers() const;
   std::vector<double> content_numbers(std::size_t count) const;
-  Eigen::Vector3d content_direction() const;  ///< three numbers, made of unit length
+  Eigen::Vector3d content_direction() const;  ///< three numbers, normalised
   bool content_flag() const;                  ///< true, false, 1 or 0
   std::size_t content_word(std::span<const std::string_view> words) const;
 
-  /// The elements in this one, in the order of the file; they keep its owner.
+  /// The elements in this one, in the order of the file, with the same owner.
   std::vector<Node> children() const;
   std::vector<Node> children(std::string_view name) const;
   /// The only element of this name, if any. @throws SceneError for two
@@ -68,7 +68,7 @@ class Node {
   [[noreturn]] void fail(std::string_view attribute, const std::string& sentence) const;
 
  private:
-  /// `what`: "mass has", in front of what is wrong with the text.
+  /// `what`: "mass has", before the fault of the text.
   std::vector<double> numbers_of(const std::string& text, const std::string& what) const;
   void expect_count(std::size_t found, std::size_t expected, const std::string& what) const;
   std::size_t word_of(const std::string& found, std::span<const std::string_view> words,

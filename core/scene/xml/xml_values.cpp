@@ -11,8 +11,8 @@ namespace {
 
 constexpr int deepest = 200;
 
-/// Names and values are UTF-8, whatever encoding the file declares: tinyxml2 hands bytes on as they
-/// stand. Comments may hold any.
+/// Refuses names and values that are not UTF-8, whatever encoding the file declares: tinyxml2 hands
+/// bytes on. Comments may hold any bytes.
 void expect_utf8(std::string_view text, const tinyxml2::XMLElement& at, const std::string& file) {
   if (first_not_utf8(text) == std::string_view::npos) return;
   const auto* declaration = at.GetDocument()->FirstChild();
@@ -47,8 +47,7 @@ Element copied(const tinyxml2::XMLElement& from, int depth, const std::string& f
   return element;
 }
 
-/// What tinyxml2 says, cut down to the cause: "XML_ERROR_MISMATCHED_ELEMENT" is "mismatched
-/// element".
+/// The cause in a name of tinyxml2: "XML_ERROR_MISMATCHED_ELEMENT" is "mismatched element".
 std::string in_words(const char* error) {
   std::string words = error;
   for (const std::string_view prefix : {"XML_ERROR_", "XML_"})

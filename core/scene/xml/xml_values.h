@@ -1,6 +1,5 @@
 #pragma once
-// XML as plain values with their lines. The parser behind it, tinyxml2, is seen by xml_values.cpp
-// alone.
+// XML as plain values with their lines. Only xml_values.cpp includes the parser, tinyxml2.
 
 #include <memory>
 #include <string>
@@ -13,7 +12,6 @@ struct Attribute {
   std::string name, text;
 };
 
-/// A file that another one includes.
 struct IncludedFile {
   std::string name;
   int number = 0;  ///< Location::file
@@ -24,16 +22,16 @@ struct Element {
   std::string name;
   std::string text;
   int line = 0;
-  std::shared_ptr<const IncludedFile> file;  ///< where it stands; null: in the file that is read
+  std::shared_ptr<const IncludedFile> file;  ///< file of the element; null: the file that is read
   std::vector<Attribute> attributes;
   std::vector<Element> children;
 
-  /// The text of an attribute; null: it has none.
+  /// The text of an attribute; null: none.
   const std::string* find(std::string_view attribute) const;
 };
 
-/// The root element of a text, which may be nested 200 deep. `file` only names it in messages.
-/// @throws SceneError for what is no XML, or over 64 MiB
+/// The root element of a text, nested at most 200 deep. `file` only names it in messages. @throws
+/// SceneError for text that is no XML, or over 64 MiB
 Element parse_xml(std::string_view text, const std::string& file);
 
 }  // namespace momenta::reading
