@@ -87,11 +87,11 @@ class Reader {
       fail(file_, place, what + ", and so is a parameter, expected another name");
   }
 
-  /// Each of those above it in the file.
+  /// A definition takes those above it in the file.
   void read_definitions(const Fields& dae) {
     const Value* table = dae.find("definitions");
     if (!table) return;
-    if (!dae.table("definitions")) return;  // complains of what is no table
+    if (!dae.table("definitions")) return;  // throws
     for (std::size_t i = 0; i < table->entries.size(); ++i) {
       const auto& [name, place, value] = table->entries[i];
       const std::string what = "dae.definitions." + name;
@@ -110,7 +110,7 @@ class Reader {
       }
     }
   }
-  /// The formula that could not be read may be of what is defined only below it.
+  /// Blames an unreadable formula for taking what is defined only below it.
   void expect_none_below(const Value& table, std::size_t i, const std::string& told) const {
     std::vector<std::string> names = definitions_.names();
     for (std::size_t k = i; k < table.entries.size(); ++k) names.push_back(table.entries[k].key);
@@ -141,7 +141,7 @@ class Reader {
                                     " variables, expected as many");
   }
 
-  /// The place of an = that stands alone; npos: none.
+  /// Place of an = that stands alone; npos: none.
   static std::size_t equals_in(const std::string& text, std::size_t from) {
     for (std::size_t i = from; i < text.size(); ++i) {
       if (text[i] != '=') continue;
@@ -162,7 +162,7 @@ class Reader {
     if (equals == std::string::npos) return definitions_.in_place(side(v, text, 0, told));
     if (const std::size_t more = equals_in(text, equals + 1); more != std::string::npos)
       fail(file_, place_in(v, more), told + ": a second '=', expected one at most");
-    // Each alone, for sentences with the right places; then the difference.
+    // Each side alone, for the right places in messages; then the difference.
     const std::string left = text.substr(0, equals), right = text.substr(equals + 1);
     side(v, left, 0, told);
     side(v, right, equals + 1, told);
@@ -191,7 +191,7 @@ class Reader {
       values[i] = given->number(out_.variables[i], quantity, otherwise);
     return values;
   }
-  /// Which variables a list of names has; without the list all, or none.
+  /// Whether the list names each variable; without a list `otherwise` for all.
   std::vector<char> chosen(const Fields& table, std::string_view key, bool otherwise) const {
     std::vector<char> all(out_.variables.size(), otherwise ? 1 : 0);
     const Value* list = table.find(key);

@@ -1,5 +1,5 @@
 #pragma once
-// A file of equations F(t, y, y') = 0: what it says, checked, its formulas read.
+// A file of equations F(t, y, y') = 0, read and checked.
 //
 //   [dae]
 //   name = "pendulum"
@@ -32,27 +32,27 @@ struct EquationFile {
     Location at;
     Expression formula;  ///< left side less right side
   };
-  /// The solution at one time, as far as it is given.
+  /// Known values of the solution at one time.
   struct Reference {
     double t = 0;
     std::vector<double> values;  ///< by variable; NaN: not given
-    std::vector<char> judged;    ///< whether errors are measured in it
+    std::vector<char> judged;    ///< variables whose errors count
   };
 
   std::string file, name;
   std::vector<std::string> variables;
   std::vector<Equation> equations;    ///< as many as variables
-  std::vector<double> parameters;     ///< their values
+  std::vector<double> parameters;     ///< values
   std::vector<double> values, rates;  ///< the guess of the start, by variable
   std::vector<double> scales;         ///< typical sizes, by variable
-  std::vector<char> held;             ///< start values that stay as they are
+  std::vector<char> held;             ///< whether the start value is kept
   double start = 0, end = 1;
   int samples = 1000;
   std::string integrator;  ///< empty: by the index
   std::optional<Reference> reference;
 
   int size() const { return static_cast<int>(variables.size()); }
-  /// Numbers that formulas take: t, then y, y', parameters.
+  /// Count of what formulas take: t, then y, y', parameters.
   std::size_t arguments() const { return 1 + 2 * variables.size() + parameters.size(); }
   /// σ_ij: 1 where der(x_j) stands in equation i, 0 where x_j does.
   structure::Signature signature() const;
@@ -62,8 +62,8 @@ struct EquationFile {
   std::string where(Location at) const;
 };
 
-/// @throws SceneError: one sentence with file, line, what was found and what was expected;
-/// structurally singular systems are refused with the equations and variables to blame
+/// @throws SceneError: file, line, what was found and expected; for structurally singular systems
+/// the equations and variables to blame
 EquationFile parse_equations(std::string_view text, const std::string& file,
                              const std::vector<Setting>& settings = {});
 EquationFile read_equations(const std::filesystem::path& file,

@@ -25,17 +25,17 @@ struct EquationRun {
   std::string integrator;
   double rtol = 0, atol = 0, step = 0, start = 0, end = 0;
   bool done = false;
-  std::string reason;  ///< one sentence where it is not done
+  std::string reason;  ///< one sentence unless done
   double stopped_at = 0;
   Counters counters;
   int switchings = 0;  ///< events of switches in formulas, at which ida began anew
   std::string linear_solver;
   double cpu_s = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> t;               ///< output times
-  std::vector<std::vector<double>> y;  ///< at each
-  std::vector<double> last;            ///< y where it stopped
+  std::vector<std::vector<double>> y;  ///< y[k] at t[k]
+  std::vector<double> last;            ///< y where the run ended
 
-  /// Of `samples` intervals.
+  /// Output time k of `samples` intervals.
   double output_time(int k, int samples) const {
     return k == samples ? end : start + (end - start) * k / samples;
   }

@@ -4,9 +4,9 @@
 //
 //   index of x_j = 1 + max c_i − d_j, at least 1,
 //
-// c of the equations that hang together with x_j. A variable of the pendulum with Φ = 0: positions
-// 1, velocities 2, λ 3. Where the Jacobian is singular: the differentiations after which x_j' is
-// determined, a little behind the start, which may have zeros in particular.
+// c of the equations connected with x_j. In the pendulum with Φ = 0: positions 1, velocities 2, λ
+// 3. With a singular Jacobian: the differentiations after which x_j' is determined, a little behind
+// the start, which may have zeros by chance.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/dense/singular_values.h>
@@ -25,8 +25,8 @@ namespace {
 
 using structure::at;
 
-/// About the time of the motion: of an equation that has both, ∂F/∂y' over ∂F/∂y at the guess; the
-/// geometric mean over equations.
+/// Rough time scale of the motion: geometric mean of ∂F/∂y' over ∂F/∂y at the guess, of the
+/// equations that have both.
 double time_scale(const EquationFile& file) {
   Slopes<double> slopes(file);
   slopes.evaluate_at(file.start, file.values.data(), file.rates.data());
@@ -65,7 +65,7 @@ SystemJacobian system_jacobian(const EquationFile& file, const structure::Offset
   found.rank = rank_by_gap(svd.values, svd.values[0]);
   for (int k = found.rank.rank; k < n; ++k) {
     Eigen::VectorXd combination = svd.u.col(k).cwiseProduct(rows);
-    // The first of those that are the largest but for rounding is 1.
+    // The first entry that is the largest but for rounding becomes 1.
     const double most = (1 - 1e-9) * combination.cwiseAbs().maxCoeff();
     Eigen::Index first = 0;
     while (std::abs(combination[first]) < most) ++first;
@@ -75,7 +75,7 @@ SystemJacobian system_jacobian(const EquationFile& file, const structure::Offset
   return found;
 }
 
-/// Of variables: one that each hangs together with, by equations that take both.
+/// By variable: representative of its part, connected by equations.
 std::vector<int> parts_of(const structure::Signature& s, const structure::Offsets& offsets) {
   const int n = s.size();
   std::vector<int> part(at(n));
@@ -91,8 +91,8 @@ std::vector<int> parts_of(const structure::Signature& s, const structure::Offset
   return part;
 }
 
-/// Of variables: whether none of the equations that they follow from, one after the other, is
-/// assigned to a derivative. The sum over such a closed set is its number of freedoms.
+/// By variable: whether no equation that it follows from, one after the other, is assigned to a
+/// derivative. σ summed over the assignments of such a closed set is its number of freedoms.
 std::vector<char> prescribed_in(const structure::Signature& s, const structure::Offsets& offsets) {
   const int n = s.size();
   std::vector<char> prescribed(at(n));
@@ -111,7 +111,7 @@ std::vector<char> prescribed_in(const structure::Signature& s, const structure::
   return prescribed;
 }
 
-/// max c over the equations that hang together with each variable.
+/// max c over the equations connected with each variable.
 std::vector<int> differentiations_around(const EquationStart& start) {
   const std::vector<int>&equation = start.offsets.equation,
         &transversal = start.offsets.transversal;
@@ -148,8 +148,7 @@ std::vector<int> indices_of(const EquationFile& file, const EquationStart& start
   return of;
 }
 
-/// How far a start is from the values that were guessed, of those that are to change least, over
-/// their size.
+/// Largest change from guess to start, over size, of variables with a derivative.
 double moved_by(const EquationFile& file, const EquationStart& start,
                 const ConsistentPoint& point) {
   double most = 0;
@@ -160,7 +159,7 @@ double moved_by(const EquationFile& file, const EquationStart& start,
   return most;
 }
 
-/// Whether ∂F/∂y' is the same at the point and where all its rates turn round.
+/// Whether ∂F/∂y' is the same at the point and with all rates reversed.
 bool is_linear_in_rates(const EquationFile& file, const ConsistentPoint& point) {
   constexpr double same = 1e-9;
   const Eigen::VectorXd turned = -point.ydot;
@@ -175,9 +174,9 @@ bool is_linear_in_rates(const EquationFile& file, const ConsistentPoint& point) 
   return true;
 }
 
-/// A guess of rates at which equations do not depend on them, y'² = y at y' = 0, has values changed
-/// in their stead, or has no start. Where other rates have one, and leave all values as they are:
-/// that start, or, where there are two, why it is none. Rates that are given decide between them.
+/// A guess of rates on which the equations do not depend there, y'² = y at y' = 0, changes values
+/// instead, or has no start. Returns the start that other rates lead to with the values kept; if
+/// there are two, `why` asks for a guess of one of the rates.
 ConsistentPoint with_other_rates(const EquationFile& file, const EquationStart& start,
                                  const Eigen::VectorXd& y, ConsistentPoint found) {
   constexpr double moved = 1e-6;
@@ -239,7 +238,7 @@ EquationStart equation_start(const EquationFile& file) {
   EquationStart start;
   start.time_scale = time_scale(file);
   const structure::Signature signature = file.signature();
-  start.offsets = *structure::sigma_method(signature);  // the reader saw to an assignment
+  start.offsets = *structure::sigma_method(signature);  // the reader ensures an assignment
   start.pantelides = structure::pantelides(signature);
   start.part = parts_of(signature, start.offsets);
   start.prescribed = prescribed_in(signature, start.offsets);

@@ -1,6 +1,6 @@
 #pragma once
-// What a file of equations is at its start: a consistent point, the differentiation index there by
-// the derivative array, the structural index by the Σ-method, and whether the two go together.
+// The start of a file of equations: a consistent point, the differentiation index there by the
+// derivative array, the structural index by the Σ-method, and whether the two agree.
 
 #include <momenta/dae/equations/residual.h>
 #include <momenta/dae/measure/consistent_point.h>
@@ -13,10 +13,9 @@ namespace momenta {
 
 /// The system Jacobian of the Σ-method at a point.
 struct SystemJacobian {
-  RankFound rank;          ///< of its rows and columns equilibrated
-  double determinant = 0;  ///< as the equations are written
-  /// Where it is singular: combinations of equations in which no highest derivative is left, by
-  /// equation, largest entry 1.
+  RankFound rank;          ///< with rows and columns equilibrated
+  double determinant = 0;  ///< with the equations as written
+  /// If singular: combinations without highest derivatives, by equation, largest entry 1.
   std::vector<Eigen::VectorXd> cancelling;
   bool regular(int n) const { return rank.rank == n; }
 };
@@ -25,11 +24,11 @@ struct EquationStart {
   ConsistentPoint point;
   structure::Offsets offsets;
   std::vector<int> pantelides;  ///< differentiations of each equation
-  SystemJacobian jacobian;      ///< at the point; of no meaning where there is none
-  std::vector<int> index_of;    ///< of each variable, 1 to the index: how rough its errors are
-  std::vector<char> appears;    ///< whether der() of it stands in an equation
-  std::vector<int> part;        ///< of each variable: one number for those that hang together
-  /// Whether the equations that give each variable have no freedom.
+  SystemJacobian jacobian;      ///< at the point; meaningless without one
+  std::vector<int> index_of;    ///< by variable, 1 to the index of the system
+  std::vector<char> appears;    ///< by variable: der() of it is in an equation
+  std::vector<int> part;        ///< by variable: number of its connected part
+  /// By variable: the equations that determine it have no freedom.
   std::vector<char> prescribed;
   double time_scale = 1;
 
@@ -40,11 +39,11 @@ struct EquationStart {
   }
 };
 
-/// @throws SceneError where an equation is not finite at the guess. Cost of consistent_point().
+/// @throws SceneError where an equation is not finite at the guess. Cost: consistent_point().
 EquationStart equation_start(const EquationFile& file);
 
-/// How much unknowns may change on the way to a consistent start: 0 what is held; infinite what has
-/// no derivative in the equations and is found from the rest.
+/// Allowed change of unknowns towards a consistent start: 0 if held; infinite without a derivative
+/// in the equations.
 Eigen::VectorXd start_scales(const EquationFile& file, const std::vector<char>& appears);
 
 /// F of a file on curves; the file must outlive it.

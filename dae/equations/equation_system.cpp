@@ -8,8 +8,8 @@ namespace momenta {
 namespace {
 constexpr int largest_dense = 40;
 /// Absolute tolerance of Newton's corrections of variables of index 2 without a derivative, in
-/// their scales. Rounding moves them by ε/h; left alone they would drift from step to step, as each
-/// step extrapolates what one iteration has left.
+/// their scales. Rounding moves them by ε/h; without a tolerance they would drift from step to
+/// step.
 constexpr double loosely = 1e-3;
 
 std::vector<char> tested_variables(const EquationStart& start) {

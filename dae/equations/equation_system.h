@@ -1,5 +1,5 @@
 #pragma once
-// A file of equations as integrators of DAEs see it.
+// A file of equations as a system for integrators of DAEs.
 
 #include <momenta/dae/equations/equation_start.h>
 #include <momenta/dae/solver/structured_system.h>
@@ -9,13 +9,12 @@ namespace momenta {
 
 /// F(t, y, y') = 0 with its exact Jacobian, dense up to 40 unknowns, from the start found before.
 /// Errors of variables of index k are weighed by h^(k−1), as implicit Runge-Kutta methods need. BDF
-/// of index 2 tests variables of index 1 with a derivative or prescribed ones, which follow from
-/// equations without a freedom, and where nothing that hangs together with a variable of index 2
-/// would be tested, that one; variables of index 2 without a derivative have a loose tolerance in
-/// Newton's norm.
+/// of index 2 tests variables of index 1 that have a derivative or are prescribed by equations
+/// without a freedom; in a connected part that has none, the variables with a derivative. Variables
+/// of index 2 without a derivative have a loose tolerance in Newton's norm.
 class EquationSystem final : public DaeSystem, public StructuredSystem {
  public:
-  /// Both must outlive it. `atol`: the run's. @pre start.point.why is empty
+  /// File and start must outlive the system. `atol`: the run's. @pre start.point.why is empty
   EquationSystem(const EquationFile& file, const EquationStart& start, double atol);
 
   int size() const override { return file_.size(); }
@@ -39,7 +38,7 @@ class EquationSystem final : public DaeSystem, public StructuredSystem {
   Residual<double> residual_;
   Slopes<double> slopes_;
   JacobianPattern pattern_;         ///< empty: dense
-  std::vector<std::size_t> place_;  ///< of each entry of slopes_ among the values
+  std::vector<std::size_t> place_;  ///< by entry of slopes_: place among the values
   std::size_t stored_ = 0;
   std::vector<char> tested_;
 };

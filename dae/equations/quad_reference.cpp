@@ -125,7 +125,7 @@ class QuadSystem {
   Slopes<double> slopes_;
 };
 
-constexpr double tight = 1e-18, loose = 1e-16;  // of the estimates, whose order is that of s alone
+constexpr double tight = 1e-18, loose = 1e-16;  // tolerances of the estimate, of order s
 
 std::vector<Quad> solution(const EquationFile& file, const EquationStart& start,
                            std::vector<Quad> y, std::vector<Quad> ydot, double end,

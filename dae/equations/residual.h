@@ -9,7 +9,7 @@
 
 namespace momenta {
 
-/// F in numbers of S. One object serves one thread. No allocation after its making.
+/// F in numbers of S, for one thread. No allocation after construction.
 template <class S>
 class Residual {
  public:
@@ -66,7 +66,7 @@ class Slopes {
   }
 
   const std::vector<Entry>& entries() const { return entries_; }
-  /// In the order of entries(), at the last evaluate_at().
+  /// Values of entries() at the last evaluate_at().
   const std::vector<S>& values() const { return values_; }
   /// O(sum of the tapes)
   void evaluate_at(const S& t, const S* y, const S* ydot) {

@@ -31,7 +31,7 @@ std::vector<double> tolerances_in(const Fields& table, const std::vector<double>
   return tolerances;
 }
 
-/// The least time of three runs, of long ones that of one.
+/// Least time of three runs; long runs are not repeated.
 void time_run(EquationRun& run, const EquationFile& file, const EquationStart& start,
               const EquationRunRequest& request) {
   for (int round = 1; round < 3 && run.done && run.cpu_s < 0.5; ++round)

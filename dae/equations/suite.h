@@ -19,7 +19,7 @@
 namespace momenta {
 
 struct SuiteProblem {
-  std::string file;                  ///< as it is to be opened
+  std::string file;                  ///< path to open
   std::vector<std::string> methods;  ///< ida, radau5
   std::vector<double> tolerances;    ///< rtol = atol, as they are written
 };
@@ -35,13 +35,13 @@ Suite read_suite(const std::filesystem::path& file);
 struct ProblemResult {
   std::string file, name, why;  ///< why: one sentence where there are no runs
   int unknowns = 0, index = -1, structural_index = -1;
-  double t = 0;  ///< of the reference
+  double t = 0;  ///< time of the reference
   std::vector<std::string> variables;
-  std::vector<std::string> reference;  ///< digits of each variable, empty: not given
+  std::vector<std::string> reference;  ///< decimals by variable, empty: not given
   bool own_reference = false;          ///< made here, in quadruple precision
-  double accuracy = 0;                 ///< of an own one: distance of two tolerances
+  double accuracy = 0;                 ///< own reference: distance of two tolerances
   std::vector<EquationRun> runs;
-  std::vector<Digits> digits;  ///< of each run
+  std::vector<Digits> digits;  ///< by run
 };
 struct SuiteResult {
   std::string name;
@@ -51,20 +51,21 @@ struct SuiteResult {
 
 struct SuiteRequest {
   enum class Timing { none, once, rounds };
-  Timing timing = Timing::rounds;  ///< rounds: short runs are repeated, their least time is taken
-  bool own_references = false;     ///< made anew also where a file has one
+  Timing timing = Timing::rounds;  ///< rounds: least time of repeats of short runs
+  bool own_references = false;     ///< made even if the file has one
   double max_cpu_seconds = 60;
-  /// Before each run (number, of how many, label); false ends the suite. May be empty.
+  /// Called before each run (number, of how many, label); false ends the suite. May be empty.
   std::function<bool(int, int, const std::string&)> progress;
 };
 
-/// The runs of one problem. `going_on` is told what comes next; false ends it. @throws SceneError
-/// where there is no consistent start, std::runtime_error where no reference can be made
+/// The runs of one problem. `going_on` takes a label of the next run; false stops. @throws
+/// SceneError where an equation is not finite at the guess, std::runtime_error without a consistent
+/// start or a reference
 ProblemResult run_problem(const EquationFile& file, const SuiteProblem& problem,
                           const SuiteRequest& request,
                           const std::function<bool(const std::string&)>& going_on);
 
-/// What cannot be run is told in its row; nothing of one problem keeps the others from running.
+/// A problem that fails says so in its `why`; the others run.
 SuiteResult run_suite(const Suite& suite, const SuiteRequest& request);
 
 }  // namespace momenta

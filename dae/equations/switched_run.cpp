@@ -16,15 +16,15 @@
 namespace momenta {
 namespace {
 
-constexpr double same_time = 1e-13;  ///< of the span
-/// How far values may move onto the constraints of a new mode, in tolerances: what dense output and
-/// the end of a step differ by. Further, and they jump.
+constexpr double same_time = 1e-13;  ///< part of the span
+/// Largest move of values onto the constraints of a new mode, in tolerances: dense output and the
+/// end of a step differ so much. Beyond it values jump.
 constexpr double same_value = 1000;
 
-/// What the last step says of a run that cannot go on: a value, or a rate, without bound.
+/// Tells from the last step of a failed run which value or rate has no bound.
 class Approach {
  public:
-  /// `begun`: when the run began.
+  /// `begun`: start time of the run.
   Approach(const EquationFile& file, double begun)
       : file_(file), begun_(begun), before_(file.variables.size()), now_(before_.size()) {}
 

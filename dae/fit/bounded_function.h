@@ -1,12 +1,12 @@
 #pragma once
 // A function of a motion, made smooth where it takes extremes. The largest of many functions has
-// corners where two of them are equal. f with an extreme that it grows with is less than a number
-// exactly if f is with some τ in its place that bounds them all,
+// corners where two of them are equal. If f grows with such an extreme, it is below a number
+// exactly if it is so with some τ in the extreme's place that bounds them all,
 //
 //   f(θ, τ),   g(q_i, θ) − τ ≤ 0  at each pose i,
 //
-// all smooth in (θ, τ); of a smallest one that it falls with, τ − g ≤ 0. Other extremes are taken
-// at the pose where they are.
+// all smooth in (θ, τ); for a minimum that f falls with, τ − g ≤ 0. Other extremes are taken at the
+// pose where they occur.
 
 #include <momenta/dae/fit/motion_parts.h>
 
@@ -17,27 +17,28 @@ namespace momenta {
 /// f(θ, τ) and its bounds.
 class BoundedFunction {
  public:
-  /// Which must outlive it.
+  /// `f` must outlive it.
   explicit BoundedFunction(const MotionFunction& f) : f_(&f) {}
 
-  /// Which extremes are bounded: those that f grows with at this motion.
+  /// Chooses the extremes to bound: those that f grows with at this motion.
   void choose(const MotionValues& first);
-  Eigen::Index unknowns() const { return static_cast<Eigen::Index>(bounded_.size()); }  ///< of τ
-  Eigen::Index rows() const { return rows_; }  ///< of bounds
-  /// τ where the extremes are, and what it counts in, > 0.
+  /// Entries of τ.
+  Eigen::Index unknowns() const { return static_cast<Eigen::Index>(bounded_.size()); }
+  Eigen::Index rows() const { return rows_; }  ///< bounds
+  /// τ at the extremes, and its sizes, > 0.
   void start(const MotionValues& values, Eigen::Ref<Eigen::VectorXd> tau,
              Eigen::Ref<Eigen::VectorXd> sizes) const;
-  /// f, and its derivatives where these are asked for.
+  /// f, and its derivatives unless null.
   double at(const MotionValues& values, const Eigen::VectorXd& tau, Eigen::VectorXd* by_theta,
             Eigen::VectorXd* by_tau) const;
-  /// Bounds; their derivatives, by θ and by τ, where these are not null.
+  /// Bounds, and their derivatives by θ and τ unless null.
   void bounds(const MotionValues& values, const Eigen::VectorXd& tau,
               Eigen::Ref<Eigen::VectorXd> rows, Eigen::MatrixXd* by_theta,
               Eigen::MatrixXd* by_tau) const;
 
  private:
   const MotionFunction* f_;
-  std::vector<std::size_t> bounded_;  ///< among its parts
+  std::vector<std::size_t> bounded_;  ///< bounded parts of f
   Eigen::Index rows_ = 0;
 };
 

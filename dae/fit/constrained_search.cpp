@@ -14,17 +14,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What the method itself takes for kept: less would be gained by breaking conditions.
+/// Tolerance of conditions in the method: little is gained by breaking them.
 constexpr double kept_to = 0.01 * kept_within;
 
-/// f and conditions at the point they were asked for last, in unknowns z = x/size.
+/// f and conditions at the last point, in unknowns z = x/size.
 class Scaled {
  public:
   Scaled(const ConstrainedProblem& problem, const VectorXd& sizes)
       : problem_(problem), sizes_(sizes) {}
 
   bool at(const VectorXd& z, bool gradients) {
-    // Where gradients do not exist there is no point to go to.
+    // A point without gradients counts as none.
     if (std::find(without_.begin(), without_.end(), z) != without_.end()) return false;
     if (has_ && z == z_ && (has_gradients_ || !gradients)) return there_is_;
     z_ = z;
@@ -44,7 +44,7 @@ class Scaled {
     if (gradients && !there_is_) without_.push_back(z);
     return there_is_;
   }
-  /// The largest violation, beside sizes of conditions where these are asked for.
+  /// Largest violation, `in_sizes`: over the sizes of conditions.
   double violation(bool in_sizes) const {
     double most = 0;
     for (Index k = 0; k < conditions.size(); ++k) {
@@ -54,8 +54,8 @@ class Scaled {
     }
     return most;
   }
-  /// The best point with gradients so far: of those that keep the conditions that of least f, else
-  /// the nearest to them.
+  /// Best point with gradients so far: least f among those that keep the conditions, else the
+  /// nearest to them.
   const VectorXd& best() const { return best_; }
   std::size_t without_gradients() const { return without_.size(); }
   const ConstrainedProblem& problem() const { return problem_; }
@@ -64,7 +64,7 @@ class Scaled {
   double f = 0;
   VectorXd conditions, df;
   MatrixXd by;
-  double f_size = 1;             ///< by which f is divided, so that its gradient is about 1
+  double f_size = 1;             ///< divisor of f that makes its gradient about 1
   VectorXd sizes_of_conditions;  ///< their change with z where the search began, 1 at least
   bool stopped = false;
   nlopt_opt method = nullptr;
@@ -168,7 +168,7 @@ double slope(const Scaled& p, const VectorXd& z, const VectorXd& least, const Ve
   }
 }
 
-/// One search; false where NLopt has no memory or takes the problem for none.
+/// One search; false if NLopt has no memory or rejects the problem.
 bool search(Scaled& p, const VectorXd& least, const VectorXd& most, int most_evaluations,
             VectorXd& z) {
   const auto n = static_cast<unsigned>(z.size());
@@ -215,8 +215,8 @@ ConstrainedEnd constrained_search(const ConstrainedProblem& problem, const Vecto
     end.slope = left > 0 ? left / size : 0;
   };
   measure();
-  // Where nothing is gained the search is begun with shorter steps, as of an f with smaller
-  // gradients; at a minimum once, elsewhere four times.
+  // One search without gain at a minimum, or four elsewhere, end the loop. Each shortens the next
+  // one's steps by scaling f down.
   constexpr std::size_t most_without = 50;
   constexpr double shorter = 10;
   const auto given_up = [&](int gained_nothing) {

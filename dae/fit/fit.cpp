@@ -70,7 +70,7 @@ class Search {
     return there_is;
   }
 
-  /// Free places to where the path is nearest, for the parameters as they are.
+  /// Moves free places to where the path is nearest, with parameters held.
   bool settle_places(VectorXd& x) {
     const Eigen::Index free = x.size() - family_.own().size();
     if (free == 0) return true;
@@ -108,7 +108,7 @@ class Search {
                               room[i], WantedErrors::none, 0});
   }
 
-  /// How far the conditions are missed, the worst of them; infinite where there is no motion.
+  /// Largest violation of a condition; infinite without a motion.
   double violation(const VectorXd& theta) {
     if (conditions_.size() == 0) return 0;
     MotionValues values;
@@ -136,7 +136,7 @@ class Search {
     least.tail(free).setConstant(-INFINITY);
     most.tail(free).setConstant(INFINITY);
     const VectorXd first = x;
-    VectorXd sizes = VectorXd::Ones(x.size());  // of angles a radian
+    VectorXd sizes = VectorXd::Ones(x.size());  // 1 rad for angles
     sizes.head(n) = sizes_;
     const LeastSquaresEnd end =
         least_squares_search([this](const VectorXd& at, VectorXd& r,
@@ -149,7 +149,7 @@ class Search {
     }
     start.cost = 0.5 * end.r.squaredNorm();
     start.cosine = end.cosine;
-    constexpr double rounding = 1e-13;  // of r, as of its derivatives
+    constexpr double rounding = 1e-13;  // in r and its derivatives
     start.converged = start.cosine <= converged_cosine || end.step <= converged_step ||
                       end.r.norm() <= rounding * std::sqrt(static_cast<double>(end.r.size()));
     start.violation = violation(x.head(n));
@@ -166,7 +166,7 @@ class Search {
     return start;
   }
 
-  /// The search with conditions, from the start.
+  /// Searches with conditions, from `first`.
   bool keep(const VectorXd& first, const VectorXd& least, const VectorXd& most, VectorXd& x,
             FitStart& start) {
     const Eigen::Index n = start.from.size();
@@ -178,7 +178,7 @@ class Search {
     }
     conditions_.count(values);
     const Eigen::Index whole = x.size(), more = conditions_.unknowns(), all = whole + more;
-    VectorXd sizes = VectorXd::Ones(all), low(all), high(all);  // of angles a radian
+    VectorXd sizes = VectorXd::Ones(all), low(all), high(all);  // 1 rad for angles
     sizes.head(n) = sizes_;
     low << least, VectorXd::Constant(more, -INFINITY);
     high << most, VectorXd::Constant(more, INFINITY);
@@ -254,7 +254,7 @@ class Search {
   WantedError error_;
   SweptParts parts_;
   KeptConditions conditions_;
-  std::string refused_;  ///< why the last step of this start that was taken back was
+  std::string refused_;  ///< why a step of this start was last taken back
   FitResult result_;
 };
 

@@ -35,7 +35,7 @@ FittedParameter FittedParameter::from_text(const std::string& text) {
   const std::size_t equals = text.find('=');
   parameter.name = text.substr(0, equals);
   if (constexpr std::string_view table = "parameters."; parameter.name.starts_with(table))
-    parameter.name.erase(0, table.size());  // its place: settings take both
+    parameter.name.erase(0, table.size());  // the prefix is optional
   if (parameter.name.empty())
     throw std::invalid_argument(option + ": expected NAME or NAME=FROM:TO");
   if (equals != std::string::npos)

@@ -12,39 +12,40 @@
 
 namespace momenta {
 
-/// A parameter that is varied, and between what.
+/// A varied parameter and its range.
 struct FittedParameter {
-  std::string name;                            ///< of [parameters]
+  std::string name;                            ///< name in [parameters], or a place
   std::optional<std::array<double, 2>> range;  ///< least and largest; none: any number
   /// "NAME" or "NAME=FROM:TO". @throws std::invalid_argument, one sentence
   static FittedParameter from_text(const std::string& text);
 };
 
-/// "FROM:TO", which `option` is told with. @throws std::invalid_argument, one sentence
+/// Reads "FROM:TO"; messages name `option` and expect `like`. @throws std::invalid_argument, one
+/// sentence
 std::array<double, 2> range_from_text(const std::string& option, const std::string& text,
                                       const std::string& like);
 
-/// What steps of differences are a part of: |θ|, of 0 the width of the range, else 1.
+/// Sizes that scale steps of differences: |θ|; for 0 the width of the range, else 1.
 Eigen::VectorXd sizes_of(const ParametricMechanism& family,
                          const std::vector<FittedParameter>& parameters);
 
-/// The ends of ranges, infinite where there is none.
+/// Ends of ranges, infinite without one.
 void bounds_of(const std::vector<FittedParameter>& parameters, Eigen::VectorXd& least,
                Eigen::VectorXd& most);
 
-/// Whether so many starts can be made. @throws std::invalid_argument, one sentence
+/// Checks that so many starts can be made. @throws std::invalid_argument, one sentence
 void expect_starts(const ParametricMechanism& family,
                    const std::vector<FittedParameter>& parameters, int starts);
 
-/// θ where searches begin: the scene's own, then drawn evenly from the ranges; the same from the
-/// same seed on every machine.
+/// θ where searches begin: the scene's own, then drawn evenly from the ranges; the same for a seed
+/// on every machine.
 class DrawnStarts {
  public:
-  /// Which must outlive it.
+  /// Family and parameters must outlive it.
   DrawnStarts(const ParametricMechanism& family, const std::vector<FittedParameter>& parameters,
               std::uint64_t seed)
       : family_(family), parameters_(parameters), random_(seed) {}
-  Eigen::VectorXd next();  ///< θ of the next one
+  Eigen::VectorXd next();  ///< θ of the next start
 
  private:
   const ParametricMechanism& family_;

@@ -47,7 +47,7 @@ class IdentificationSearch {
   }
 
  private:
-  /// Errors of the run itself, as a part of what is measured: no smaller r can be looked for.
+  /// Relative error of the run itself, below which r cannot come.
   double of_the_run() const {
     constexpr double rounding = 1e-13, of_tolerance = 10;
     return error_.settings().step > 0 ? rounding

@@ -19,52 +19,51 @@
 
 namespace momenta {
 
-/// What is varied, and how.
+/// Parameters to vary, and settings.
 struct IdentificationRequest {
   std::vector<FittedParameter> parameters;  ///< at least one
-  SceneText scene;                          ///< that of the family, as text
-  RunSettings settings;                     ///< of the runs, which end at the last measured time
+  SceneText scene;                          ///< text of the family's scene
+  RunSettings settings;                     ///< runs end at the last measured time
   int starts = 1;                           ///< the first is the scene's own
-  std::uint64_t seed = 1;                   ///< of the others; they need ranges
-  int most_iterations = 500;                ///< of each start
-  /// Starts that are finished, and where they are kept; null: nowhere.
+  std::uint64_t seed = 1;                   ///< for further starts, which need ranges
+  int most_iterations = 500;                ///< per start
+  /// Journal of finished starts; null: none.
   Journal* journal = nullptr;
-  /// Called before each run, with the number of the start and the least cost so far; false ends the
-  /// search, and what the start has come to is left.
+  /// Called before each run (start, least cost so far); false ends the search with the start as it
+  /// is.
   std::function<bool(int, double)> progress;
 };
 
-/// What was found.
+/// Result of an identification.
 struct Identification {
-  std::string scene;                        ///< its name
+  std::string scene;                        ///< name
   std::vector<FittedParameter> parameters;  ///< θ, as asked
   std::uint64_t seed = 1;                   ///< as asked
-  RunSettings settings;                     ///< of the runs
+  RunSettings settings;                     ///< settings of the runs
   Eigen::VectorXd own;                      ///< θ of the scene
   Eigen::VectorXd found;                    ///< the best θ
-  /// Of `found`, standard deviations in the units of θ: NaN where a bound holds it, r leaves it
-  /// open, or no more is measured than found.
+  /// Standard deviations of `found`, in units of θ: NaN where a bound holds θ, r leaves it open, or
+  /// N ≤ n.
   Eigen::VectorXd deviations;
-  MeasuredMotion measured;  ///< as asked
-  Eigen::MatrixXd before;   ///< times × quantities, of the scene as it is; empty: no such run
-  Eigen::MatrixXd after;    ///< of the best
-  double cost_before = WantedErrors::none;  ///< ½ |r|²; NaN: no such run
-  double cost_after = WantedErrors::none;   ///< of the best
-  std::string why_not_before;               ///< why no such run; else empty
-  std::vector<FitStart> starts;             ///< in their order
-  std::size_t best = 0;                     ///< place among them
-  long runs = 0;                            ///< with their derivatives
-  bool stopped = false;                     ///< by `progress`
-  std::string undetermined;                 ///< as of FitResult
-  std::vector<std::string> remarks;         ///< sentences on what of a run is not smooth
+  MeasuredMotion measured;                  ///< as asked
+  Eigen::MatrixXd before;                   ///< y of the given scene, times × quantities; or empty
+  Eigen::MatrixXd after;                    ///< y of the best
+  double cost_before = WantedErrors::none;  ///< ½ |r|² of the given scene; NaN: no run
+  double cost_after = WantedErrors::none;   ///< ½ |r|² of the best
+  std::string why_not_before;               ///< why there is no run; else empty
+  std::vector<FitStart> starts;             ///< starts in order
+  std::size_t best = 0;                     ///< index of the best start
+  long runs = 0;                            ///< runs with derivatives
+  bool stopped = false;                     ///< stopped by `progress`
+  std::string undetermined;                 ///< as in FitResult
+  std::vector<std::string> remarks;         ///< sentences on jumps and kinks of runs
 
-  /// Root mean square and largest size of value − measured, of each quantity in its unit: 2
-  /// columns.
+  /// Root mean square and maximum of |value − measured|, by quantity: 2 columns.
   Eigen::MatrixXd errors(const Eigen::MatrixXd& values) const;
 };
 
-/// @throws SceneError where no start is possible: the sentence says why the first is not;
-/// std::invalid_argument for what is asked
+/// @throws SceneError where no start is possible, with the reason of the first;
+/// std::invalid_argument for a bad request
 /// Cost: a forward gradient of a run by all θ for each step tried
 Identification identify(const ParametricMechanism& family, const MeasuredMotion& measured,
                         const IdentificationRequest& request);

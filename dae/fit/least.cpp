@@ -222,8 +222,8 @@ class LeastSearch {
   MotionFunction functional_;
   BoundedFunction bounded_;
   KeptConditions conditions_;
-  std::vector<std::size_t> curves_;  ///< parts of which result_.curves are
-  std::string refused_;              ///< why the last step of this start that was taken back was
+  std::vector<std::size_t> curves_;  ///< parts shown by result_.curves
+  std::string refused_;              ///< why a step of this start was last taken back
   LeastResult result_;
 };
 

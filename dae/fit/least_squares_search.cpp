@@ -11,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A block for each unknown, so that each can be held.
+/// Cost with a block per unknown, so that each can be held.
 class Cost final : public ceres::CostFunction {
  public:
   Cost(const Residuals& residuals, Eigen::Index count, Eigen::Index unknowns)
@@ -35,7 +35,7 @@ class Cost final : public ceres::CostFunction {
   Eigen::Index unknowns_;
 };
 
-/// One search with these unknowns held; its iterations.
+/// One search with the unknowns of `held` fixed; its iterations.
 int search(const Residuals& residuals, Eigen::Index count, const VectorXd& least,
            const VectorXd& most, const std::vector<bool>& held, int most_iterations, VectorXd& x) {
   ceres::Problem problem;
@@ -64,7 +64,7 @@ int search(const Residuals& residuals, Eigen::Index count, const VectorXd& least
   return std::max(0, static_cast<int>(summary.iterations.size()) - 1);
 }
 
-/// Unknowns that a bound holds; the cosine and the step of the others.
+/// Finds the unknowns that a bound holds, and cosine and step of the others.
 void look(const VectorXd& x, const MatrixXd& jacobian, const VectorXd& least, const VectorXd& most,
           const VectorXd& sizes, LeastSquaresEnd& end, std::vector<bool>& held) {
   const VectorXd& r = end.r;

@@ -1,9 +1,9 @@
 #pragma once
 // min ½ |r(x)|² between bounds, by the method of Levenberg and Marquardt. Ceres Solver, which does
 // it, is seen by least_squares_search.cpp alone. Its steps are made without bounds and cut at them,
-// and come to a halt where one is met; so the search goes on from there with the unknowns left out
-// that a bound holds, those with x_j at it and the gradient Jᵀr pointing beyond, until the rest is
-// at its minimum and none is held that would go back.
+// and come to a halt where one is met; so the search goes on without the unknowns that a bound
+// holds, those with x_j at it and the gradient Jᵀr pointing beyond, until the rest is at its
+// minimum and no held one would go back.
 // Source: Levenberg 1944; Marquardt 1963; active sets: Nocedal, Wright, Numerical Optimization,
 // ch. 10, 16.
 
@@ -13,7 +13,7 @@
 
 namespace momenta {
 
-/// r at x, and ∂r/∂x where it is not null; false: there is none here, and a shorter step is tried.
+/// r at x, and ∂r/∂x unless null; false: r does not exist here, and a shorter step is tried.
 using Residuals =
     std::function<bool(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian)>;
 
@@ -24,16 +24,16 @@ struct LeastSquaresEnd {
   /// Largest cosine of the angle between r and a column of ∂r/∂x, of unknowns that no bound holds:
   /// 0 at a minimum.
   double cosine = std::numeric_limits<double>::quiet_NaN();
-  /// Largest part of its size by which Gauss and Newton's step would still move such an unknown: of
-  /// an r that is rounding the cosine is any number, and this is rounding.
+  /// Largest part of its size by which the Gauss-Newton step would move such an unknown: where r is
+  /// rounding so is this, while the cosine is any number.
   double step = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Above both no minimum is claimed.
+/// Limits; above both no minimum is claimed.
 inline constexpr double converged_cosine = 1e-4, converged_step = 1e-9;
 
-/// From x, whose `sizes` are > 0, between `least` and `most`, infinite where there is no bound;
-/// leaves the best point in x.
+/// Searches from x, `sizes` > 0, between `least` and `most`, which may be infinite; leaves the best
+/// point in x.
 LeastSquaresEnd least_squares_search(const Residuals& residuals, const Eigen::VectorXd& least,
                                      const Eigen::VectorXd& most, const Eigen::VectorXd& sizes,
                                      int most_iterations, Eigen::VectorXd& x);

@@ -21,21 +21,20 @@ namespace momenta {
 /// Residuals of a measured motion, by θ.
 class MeasuredError {
  public:
-  /// `scene`: that of the family, as text. Both and `measured` must outlive it.
+  /// `scene`: text of the family's scene. All references must outlive it.
   MeasuredError(const ParametricMechanism& family, const SceneText& scene, RunSettings settings,
                 const MeasuredMotion& measured);
 
-  /// r (count) and ∂r/∂θ (count × parameters), null: not asked for. False where there is no such
-  /// run, or no derivative: why() says which. Cost: a forward gradient by all θ, once for the same
-  /// θ
+  /// r (count) and ∂r/∂θ (count × parameters), unless null. False without a run or a derivative:
+  /// why() says which. Cost: a forward gradient by all θ, once for the same θ
   bool evaluate(const Eigen::VectorXd& theta, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian);
-  /// y (times × quantities, in their units) of the last evaluation that succeeded.
+  /// y (times × quantities, in their units) of the last success.
   const Eigen::MatrixXd& reached() const { return reached_; }
   const RunSettings& settings() const { return settings_; }  ///< as run
-  const std::string& why() const { return why_; }  ///< one sentence, without its full stop
-  /// What gradients remarked, each sentence once.
+  const std::string& why() const { return why_; }            ///< a sentence without full stop
+  /// Remarks of the gradients, each once.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  long runs() const { return runs_; }  ///< so far
+  long runs() const { return runs_; }  ///< runs so far
 
   /// w_k of each quantity.
   const Eigen::VectorXd& weights() const { return weights_; }
@@ -46,7 +45,7 @@ class MeasuredError {
   RunSettings settings_;
   const MeasuredMotion& measured_;
   Eigen::VectorXd weights_;
-  Eigen::VectorXd theta_, r_;  ///< of the last evaluation
+  Eigen::VectorXd theta_, r_;  ///< at the last evaluation
   Eigen::MatrixXd jacobian_, reached_;
   std::vector<std::string> remarks_;
   std::string why_;

@@ -1,7 +1,7 @@
 #pragma once
-// What was measured of a moving mechanism, from a CSV: a column `t [s]` and columns named like
-// those of trajectory.csv, coordinates, rates, positions and velocities of markers. A line a time;
-// an empty cell: not measured then.
+// Measurements of a moving mechanism, from a CSV: a column `t [s]` and columns named like those of
+// trajectory.csv, coordinates, rates, positions and velocities of markers. A line per time; an
+// empty cell: not measured.
 
 #include <momenta/dae/mechanism.h>
 
@@ -18,7 +18,7 @@ struct MeasuredMotion {
   std::vector<Column> quantities;  ///< without t
   std::vector<double> times;       ///< ascending [s]
   Eigen::MatrixXd values;          ///< times × quantities, each in its unit; NaN: not measured
-  /// How many numbers there are.
+  /// Count of measured numbers.
   Eigen::Index count() const { return values.size() - values.array().isNaN().count(); }
 };
 

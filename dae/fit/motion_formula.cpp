@@ -29,13 +29,13 @@ bool in_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '\'';
 }
 
-/// Where the name in quotes that begins at `at` ends; the end of the text where it does not.
+/// End of the quoted name that begins at `at`; end of the text if not closed.
 std::size_t after_quotes(const std::string& text, std::size_t at) {
   const std::size_t end = text.find('\'', at + 1);
   return end == std::string::npos ? text.size() : end + 1;
 }
 
-/// Where the bracket that opens at `at` closes; whether a comma stands in it by itself.
+/// Place where the bracket opened at `at` closes; whether a comma stands directly in it.
 std::size_t closing(const std::string& text, std::size_t at, bool& comma) {
   int depth = 0;
   comma = false;
@@ -52,7 +52,7 @@ std::size_t closing(const std::string& text, std::size_t at, bool& comma) {
   refuse(text, "a bracket is not closed, expected ')'");
 }
 
-/// Whether the formula knows all its names.
+/// Whether the formula is a number and takes `names` alone.
 bool is_of(const std::string& formula, const std::vector<std::string>& names) {
   try {
     return !Expression(formula, names).is_truth();

@@ -19,11 +19,11 @@ namespace momenta {
 
 /// A formula of single poses or times, and how it becomes a number.
 struct MotionPart {
-  /// How it becomes a number.
+  /// Ways to a number.
   enum class Kind { most, least, mean, integral, first, last };
-  Kind kind = Kind::most;  ///< its kind
-  std::string formula;     ///< of columns and parameters
-  /// Whether it is the largest or the smallest of all.
+  Kind kind = Kind::most;  ///< way to a number
+  std::string formula;     ///< g, of columns and parameters
+  /// Whether it is a maximum or a minimum.
   bool is_extreme() const { return kind == Kind::most || kind == Kind::least; }
 };
 
@@ -32,9 +32,9 @@ class SmoothFormula {
  public:
   /// @throws std::invalid_argument: one sentence
   SmoothFormula(const std::string& formula, const std::vector<std::string>& names);
-  /// Its value, and ∂/∂name of all names where it is asked for. x: as many as names.
+  /// Value at x, one number per name, and ∂/∂x unless null.
   double operator()(const Eigen::VectorXd& x, Eigen::VectorXd* by) const;
-  /// Places of the names that it takes.
+  /// Places of the names it takes.
   const std::vector<int>& used() const { return used_; }
 
  private:
@@ -46,19 +46,19 @@ class SmoothFormula {
 struct MotionFormula {
   std::string text;               ///< as written
   std::string outer;              ///< with name_of(k) in the place of part k
-  std::vector<MotionPart> parts;  ///< in their order
+  std::vector<MotionPart> parts;  ///< parts in order
 
   /// @throws std::invalid_argument: one sentence
   static MotionFormula from_text(const std::string& text);
-  /// What stands for a part.
+  /// Name that stands for a part.
   static std::string name_of(std::size_t part) { return "motion.part" + std::to_string(part); }
 };
 
-/// less ≤ more, or equal.
+/// less ≤ more, or less = more.
 struct MotionCondition {
   std::string text;    ///< as written
   bool equal = false;  ///< an equation
-  MotionFormula gap;   ///< less − more: not positive where it is kept, or 0
+  MotionFormula gap;   ///< less − more: ≤ 0, or 0, where kept
 
   /// `parameters`: names known without a motion. < and > count as ≤ and ≥. @throws
   /// std::invalid_argument: one sentence

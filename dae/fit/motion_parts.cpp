@@ -56,7 +56,7 @@ MotionFunction::MotionFunction(const MotionFormula& formula, MotionParts& parts)
     }
     outer_ = std::make_unique<SmoothFormula>(formula.outer, names);
   } catch (const std::invalid_argument& error) {
-    // Names of parts are nobody's concern.
+    // Messages do not show names of parts.
     if (!parts_.empty() && formula.outer == MotionFormula::name_of(0)) throw;
     const std::string why = error.what();
     if (why.find("motion.part") == std::string::npos) throw;

@@ -10,39 +10,39 @@
 
 namespace momenta {
 
-/// A motion at θ. Derivatives are there where they were asked for.
+/// A motion at θ, with derivatives if asked for.
 struct MotionValues {
   Eigen::VectorXd parameters;     ///< all of the scene, formulas of θ among them
-  Eigen::MatrixXd parameters_by;  ///< by θ
-  /// Of each part: of an extreme of a swept motion g at each pose, else one number.
+  Eigen::MatrixXd parameters_by;  ///< parameters × θ
+  /// By part: g at each pose for an extreme of a swept motion, else one number.
   std::vector<Eigen::VectorXd> parts;
-  std::vector<Eigen::MatrixXd> parts_by;  ///< of each, rows × θ
+  std::vector<Eigen::MatrixXd> parts_by;  ///< by part, rows × θ
 };
 
 /// Numbers of a motion, by θ.
 class MotionParts {
  public:
-  /// `sizes` of θ, > 0: of what steps of differences are a part. The family must outlive it.
+  /// `sizes` of θ, > 0, scale steps of differences. The family must outlive it.
   MotionParts(const ParametricMechanism& family, Eigen::VectorXd sizes);
   virtual ~MotionParts() = default;
 
-  /// A further part; its place. @throws std::invalid_argument: one sentence
+  /// Adds a part; its place. @throws std::invalid_argument: one sentence
   virtual std::size_t add(const MotionPart& part) = 0;
-  /// The motion at θ; false where there is none, or it has no derivatives: why() says why.
+  /// The motion at θ; false without it or its derivatives: why() says why.
   virtual bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) = 0;
-  const std::string& why() const { return why_; }  ///< one sentence, without its full stop
+  const std::string& why() const { return why_; }  ///< a sentence without full stop
 
-  /// Names of all parameters of the scene, in the order of MotionValues.
+  /// Names of the scene's parameters, as in MotionValues.
   const std::vector<std::string>& parameter_names() const { return parameter_names_; }
 
  protected:
   /// All parameters of the scene at θ. @throws SceneError
   Eigen::VectorXd parameters_at(const Eigen::VectorXd& theta) const;
-  /// The same with derivatives by θ, differences for those that are formulas. @throws SceneError
+  /// The same with derivatives by θ, differences for formulas. @throws SceneError
   void take_parameters(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) const;
 
   const ParametricMechanism& family_;  ///< θ ↦ mechanism
-  Eigen::VectorXd sizes_;              ///< of θ
+  Eigen::VectorXd sizes_;              ///< sizes of θ
   std::string why_;                    ///< as why()
 
  private:
@@ -52,24 +52,24 @@ class MotionParts {
 /// A formula of a motion, ready to be evaluated.
 class MotionFunction {
  public:
-  /// Its parts are added to `parts`. @throws std::invalid_argument: one sentence
+  /// Adds its parts to `parts`. @throws std::invalid_argument: one sentence
   MotionFunction(const MotionFormula& formula, MotionParts& parts);
 
-  /// Where its parts stand in MotionValues, and of what kind they are.
+  /// Places of its parts in MotionValues.
   const std::vector<std::size_t>& places() const { return places_; }
-  /// In their order.
+  /// Parts in the order of places().
   const std::vector<MotionPart>& parts() const { return parts_; }
-  /// The poses at which extremes are taken; 0 of other parts.
+  /// Poses of the extremes; 0 for other parts.
   std::vector<Eigen::Index> rows(const MotionValues& values) const;
-  /// Its value with its parts at these rows, `taken` in their place where they are not NaN; its
-  /// derivative by θ, and by its parts, where these are not null.
+  /// Value with the parts at `rows`, or `taken` where not NaN; derivatives by θ and by the parts
+  /// unless null.
   double at(const MotionValues& values, const std::vector<Eigen::Index>& rows,
             const Eigen::VectorXd& taken, Eigen::VectorXd* by_theta,
             Eigen::VectorXd* by_parts) const;
-  /// Its value as it is.
+  /// Value with the extremes of the motion.
   double value(const MotionValues& values) const;
-  /// Its extremes of which more of a maximum, or less of a minimum, would make it larger: those
-  /// that can be bounded from outside while it is made less.
+  /// Parts of which a larger maximum, or a smaller minimum, makes the value larger: they can be
+  /// bounded from outside while it is minimised.
   std::vector<std::size_t> bounded(const MotionValues& values) const;
 
  private:

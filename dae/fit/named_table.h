@@ -1,7 +1,6 @@
 #pragma once
-// A CSV whose columns have names that are known beforehand: what is wanted of a mechanism, or what
-// was measured on one. Names as in move.csv and trajectory.csv, the unit may be left out; an empty
-// cell says nothing.
+// A CSV with columns of known names: wanted poses of a mechanism, or measurements on one. Names as
+// in move.csv and trajectory.csv, the unit may be left out; an empty cell says nothing.
 
 #include <momenta/dae/mechanism.h>
 
@@ -12,21 +11,21 @@
 
 namespace momenta {
 
-/// What may stand in such a file, and its words.
+/// Columns of such a file, and words for messages.
 struct NamedTableForm {
   const char* kind;           ///< "file of wanted poses"
   const char* rows;           ///< "poses"
-  const char* other;          ///< of a column: "is no coordinate and no position of a marker"
-  const char* whole_alone;    ///< where the column `whole` is the only one
-  std::vector<Column> known;  ///< columns that it may have
-  std::size_t whole = 0;      ///< which of them has no empty cells
+  const char* other;          ///< other column: "is no coordinate and no position of a marker"
+  const char* whole_alone;    ///< message if `whole` is the only column
+  std::vector<Column> known;  ///< permitted columns
+  std::size_t whole = 0;      ///< permitted column without empty cells
 };
 
-/// Its numbers.
+/// Contents of such a file.
 struct NamedTable {
-  std::vector<std::size_t> columns;  ///< of each column its place among the known ones
+  std::vector<std::size_t> columns;  ///< by column: place among the known ones
   Eigen::MatrixXd values;            ///< rows × columns; NaN where a cell is empty
-  std::vector<int> lines;            ///< of each row its line in the file
+  std::vector<int> lines;            ///< by row: line in the file
 };
 
 /// @throws SceneError: file, line, what was found, what was expected

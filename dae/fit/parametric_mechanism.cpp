@@ -10,7 +10,7 @@
 namespace momenta {
 namespace {
 
-/// Where the line `at.line` has its character `at.column` [byte]; npos: nowhere.
+/// Byte of character `at.column` of line `at.line`; npos: none.
 std::size_t byte_of(const std::string& text, Location at) {
   std::size_t begin = 0;
   for (int line = 1; line < at.line; ++line) {
@@ -28,7 +28,7 @@ std::size_t byte_of(const std::string& text, Location at) {
   return at.column > 0 && begin < text.size() ? begin : std::string::npos;
 }
 
-/// The text with a number in the place of one that stands there, or of a formula in quotes.
+/// Puts a number in place of the number, or formula in quotes, at `at`; false: none.
 bool put_number(std::string& text, Location at, double number) {
   const std::size_t begin = byte_of(text, at);
   if (begin == std::string::npos) return false;
@@ -65,7 +65,7 @@ ParametricMechanism::ParametricMechanism(std::string text, std::string file,
   }
 }
 
-/// Of a parameter, or at a place of the text.
+/// The number of a parameter, or at a place of the text.
 double ParametricMechanism::own_number(const Scene& own, const std::string& name) const {
   std::vector<std::string_view> known;
   for (const ParameterSpec& p : own.parameters) {
@@ -106,7 +106,7 @@ std::string ParametricMechanism::text(const Eigen::VectorXd& values) const {
       put = false;
     }
   const std::string meant = scene_text(scene(values));
-  // What was put in is read again: a text that does not say the same is written anew.
+  // The text is read again: if it says something else it is written anew.
   try {
     if (put && scene_text(parse_scene(text, file_, {})) == meant) return text;
   } catch (const SceneError&) {  // no scene: written anew

@@ -21,15 +21,15 @@ class ParametricMechanism {
   ParametricMechanism(std::string text, std::string file, std::vector<Setting> fixed,
                       std::vector<std::string> names, MechanismOptions options = {});
 
-  const std::vector<std::string>& names() const { return names_; }  ///< of θ
+  const std::vector<std::string>& names() const { return names_; }  ///< names of θ
   /// θ as the scene has it.
   const Eigen::VectorXd& own() const { return own_; }
-  /// Its scene, drives included. @throws SceneError
+  /// The scene, drives included. @throws SceneError
   Scene scene(const Eigen::VectorXd& values) const;
   /// The mechanism, drives held as at t = 0. @throws SceneError
   std::unique_ptr<Mechanism> at(const Eigen::VectorXd& values) const;
-  /// The scene's text with these numbers in it, all else as it was; the scene written anew where
-  /// numbers stand that are no parameters.
+  /// The scene's text with these numbers in place, all else as it was; the scene written anew where
+  /// that fails.
   std::string text(const Eigen::VectorXd& values) const;
 
  private:

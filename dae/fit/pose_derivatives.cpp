@@ -12,7 +12,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double independent = 1e-9;  // pivots of F_q, beside the largest
+constexpr double independent = 1e-9;  // least pivot of F_q over the largest
 
 }  // namespace
 
@@ -76,7 +76,7 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
   derivatives.assign(poses.size(), MatrixXd::Zero(count, parameters + 1));
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto first = whole * static_cast<Eigen::Index>(i);
-    loops.gap(0, poses[i]);  // places it
+    loops.gap(0, poses[i]);  // places e
     Fq.setZero();
     const std::vector<double> entries = loops.jacobian();
     for (std::size_t k = 0; k < entries.size(); ++k)

@@ -25,19 +25,19 @@
 namespace momenta {
 
 /// y of one pose [rad or m], in the order of the quantities. Places the evaluation at q; `markers`:
-/// how many the scene has.
+/// count in the scene.
 Eigen::VectorXd quantities_at(Evaluation<double>& e, const Eigen::VectorXd& q,
                               const std::vector<WantedPoses::Quantity>& quantities, int markers);
 
 class PoseDerivatives {
  public:
-  /// `sizes` of the parameters, > 0: of what h is a part. The family must outlive it.
+  /// `sizes` of the parameters, > 0, scale h. The family must outlive it.
   PoseDerivatives(const ParametricMechanism& family, Eigen::VectorXd sizes,
                   std::vector<WantedPoses::Quantity> quantities);
 
-  /// Of each pose q, at `values` whose mechanism is given, a matrix quantities × (parameters + 1),
-  /// by θ and, last, by s; `rate`: place in u of the swept coordinate. False where F_q loses rank:
-  /// `lost` is then the pose. @throws SceneError where a mechanism within 3h is none
+  /// For each pose q, at `values` with their `mechanism`, a matrix quantities × (parameters + 1),
+  /// by θ and, last, by s; `rate`: place of the swept coordinate in u. False where F_q loses rank:
+  /// `lost` is then the pose. @throws SceneError if a mechanism within 3h fails
   /// Cost: six mechanisms a parameter, and for each pose their Φ and one QR decomposition of F_q
   bool at(const Eigen::VectorXd& values, const Mechanism& mechanism, int rate,
           const std::vector<Eigen::VectorXd>& poses, std::vector<Eigen::MatrixXd>& derivatives,

@@ -22,7 +22,7 @@ std::size_t RunParts::add(const MotionPart& part) {
         ": of a run no largest, smallest or first value is taken, as these have no gradient here; "
         "expected integral(…), mean(…) or last(…), a large power in integral(…) in place of "
         "max(…), or a motion by --sweep");
-  // Formulas of what is varied are numbers to a run's derivative.
+  // A run's derivative takes formulas of varied parameters as constants.
   const std::vector<std::string>& names = parameter_names();
   const VectorXd theta = family_.own();
   MotionValues values;

@@ -11,15 +11,14 @@ namespace momenta {
 /// Numbers of a run, by θ.
 class RunParts final : public MotionParts {
  public:
-  /// `scene`: that of the family, as text. Steps of the same size make a function that is smooth:
-  /// `settings` had better name one.
+  /// `scene`: text of the family's scene. A fixed step in `settings` makes the function smooth.
   RunParts(const ParametricMechanism& family, Eigen::VectorXd sizes, SceneText scene,
            RunSettings settings);
   std::size_t add(const MotionPart& part) override;
   /// Cost: that of gradient(), for each part
   bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) override;
 
-  /// What gradients remarked, each sentence once.
+  /// Remarks of the gradients, each once.
   const std::vector<std::string>& remarks() const { return remarks_; }
 
  private:

@@ -29,7 +29,7 @@ void read_all(const Json& json, Eigen::VectorXd& to) {
     to[i] = number_of(json.at(static_cast<std::size_t>(i)));
 }
 
-/// What starts of both kinds have.
+/// Fields of both kinds of start.
 template <class Start>
 Json common(const Start& s) {
   return {{"from", json_of_all(s.from)},

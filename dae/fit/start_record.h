@@ -11,11 +11,11 @@ namespace momenta {
 
 nlohmann::json record_of_start(const FitStart& start);
 nlohmann::json record_of_start(const LeastStart& start);
-/// False, and the start is not to be used, where the record is none.
+/// False, with the start unusable, for an invalid record.
 bool read_start(const nlohmann::json& record, FitStart& start);
 bool read_start(const nlohmann::json& record, LeastStart& start);
 
-/// What the journal has of a start that begins at `from`; nothing without a journal.
+/// The start from `from` in the journal, if any.
 template <class Start>
 std::optional<Start> recalled(Journal* journal, const std::string& key,
                               const Eigen::VectorXd& from) {

@@ -1,5 +1,5 @@
 #pragma once
-// The starts of a search, one after another, and which is the best.
+// The starts of a search, one after another, and the best of them.
 
 #include <momenta/dae/fit/start_record.h>
 
@@ -9,15 +9,14 @@
 
 namespace momenta {
 
-/// Whether one of the starts so far was possible; `Result` is FitResult, LeastResult or
-/// Identification.
+/// Whether a start so far was possible; `Result`: FitResult, LeastResult or Identification.
 template <class Result>
 bool has_best(const Result& result) {
   return !result.starts.empty() && result.starts[result.best].to.size() > 0;
 }
 
-/// Starts that the journal has are recalled, others come of `search(number, from)`, which gives
-/// none where it is to go no further. The best, by `is_better(a, b)`, is left in result.best.
+/// Recalls starts from the journal, makes others by `search(number, from)`, which returns none to
+/// stop. The best, by `is_better(a, b)`, is left in result.best.
 /// @throws SceneError where no start is possible
 template <class Request, class Result, class Search, class Better>
 void take_starts(const ParametricMechanism& family, const Request& request, Result& result,

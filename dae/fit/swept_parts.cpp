@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// "O" of "O.q"; "J.q2" of itself.
+/// "O" for "O.q"; else the name itself.
 std::string by_joint(const std::string& column) {
   return column.ends_with(".q") ? column.substr(0, column.size() - 2) : column;
 }
@@ -164,7 +164,7 @@ bool SweptParts::at(const VectorXd& theta, bool derivatives, MotionValues& value
   try {
     take_parameters(theta, derivatives, values);
     MatrixXd table, near;
-    std::vector<MatrixXd> by;  // of each θ
+    std::vector<MatrixXd> by;  // by θ_j
     if (parts_.empty()) {
       values.parts.clear();
       values.parts_by.clear();
@@ -178,7 +178,7 @@ bool SweptParts::at(const VectorXd& theta, bool derivatives, MotionValues& value
         if (!take(other, near)) throw SceneError(why_);
         return VectorXd(near.reshaped());
       };
-      // At one width: what closes no longer a little away is no candidate.
+      // At one width: a θ whose neighbours do not close is no candidate.
       by.push_back(sixth_order::slope_at(sixth_order::part * sizes_[j], sixth_order::iterated, 0,
                                          table.reshaped(), at_point)
                        .by.reshaped(table.rows(), table.cols()));

@@ -19,28 +19,27 @@
 
 namespace momenta {
 
-/// A way of a coordinate.
+/// Range and rate of a swept coordinate.
 struct SweptWay {
-  std::string sweep;                             ///< the coordinate, "O" or "J.q2"
+  std::string sweep;                             ///< "O" or "J.q2"
   std::optional<std::array<double, 2>> between;  ///< [rad or m]; none: a turn from the start
-  int poses = 73;                                ///< on the way, both ends among them
-  double rate = 1;                               ///< of it [rad/s or m/s]
+  int poses = 73;                                ///< both ends included
+  double rate = 1;                               ///< [rad/s or m/s]
 };
 
 /// Numbers of a swept motion, by θ.
 class SweptParts final : public MotionParts {
  public:
-  /// @throws std::invalid_argument for a way that is none; SceneError where the scene as it is
-  /// cannot be swept
+  /// @throws std::invalid_argument for a bad way; SceneError where the given scene cannot be swept
   SweptParts(const ParametricMechanism& family, Eigen::VectorXd sizes, SweptWay way);
-  /// @throws std::invalid_argument also for a way without ends of what is no angle
+  /// @throws std::invalid_argument also for a length without `between`
   std::size_t add(const MotionPart& part) override;
-  /// Without parts it is not swept. Cost: a way of poses, six more a parameter with derivatives
+  /// Sweeps only if there are parts. Cost: one sweep, six more per parameter with derivatives
   bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) override;
 
   const std::vector<double>& places() const { return places_; }  ///< s [rad or m]
   const Column& swept() const { return swept_; }                 ///< the swept coordinate
-  /// g of a part at each pose of the last motion; of any kind.
+  /// g of a part of any kind, by pose of the last motion.
   const Eigen::VectorXd& curve(std::size_t part) const { return curves_[part]; }
 
  private:
@@ -48,20 +47,20 @@ class SweptParts final : public MotionParts {
     enum class Of { coordinate, rate, marker, effort, transmission, reaction };
     std::string name;
     Of of = Of::coordinate;
-    int place = 0;  ///< in q, u, markers, MotionReactions::names(); of a transmission in q
+    int place = 0;  ///< in q, u, markers, MotionReactions::names(); transmission: in q
   };
   struct Part {
     MotionPart::Kind kind;
-    SmoothFormula g;  ///< of parameters, then names_
+    SmoothFormula g;  ///< takes parameters, then names_
   };
-  /// Columns that are used, poses × names.
+  /// Table of the used columns, poses × names; false: why_.
   bool take(const Eigen::VectorXd& theta, Eigen::MatrixXd& table);
 
   SweptWay way_;
   Column swept_;
   std::vector<double> places_;
   std::vector<Name> names_;
-  int reactions_ = 0;  ///< how many of them
+  int reactions_ = 0;  ///< count of reactions
   std::vector<bool> used_;
   std::vector<Part> parts_;
   std::vector<Eigen::VectorXd> curves_;

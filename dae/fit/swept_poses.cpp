@@ -37,7 +37,7 @@ SweptPoses::SweptPoses(const Mechanism& mechanism, const std::string& sweep)
                                " more degrees of freedom; expected a mechanism with one alone");
 }
 
-/// To s in units, by steps that are halved where Newton's method does not come to them.
+/// Moves `here` to s [units]; steps are halved where Newton's method fails.
 bool SweptPoses::walk(CurvePoint& here, double s) {
   double step = longest_step;
   CurvePoint to;

@@ -13,25 +13,25 @@ namespace momenta {
 class SweptPoses {
  public:
   /// Assembles the mechanism, which must outlive it. @throws SceneError where it cannot be
-  /// assembled, where `sweep` is not known or cannot move, where freedoms are left
+  /// assembled, `sweep` is unknown or cannot move, or freedoms are left
   SweptPoses(const Mechanism& mechanism, const std::string& sweep);
 
-  /// Where c stands at the start [rad or m].
+  /// c at the start [rad or m].
   double start() const { return start_; }
   /// Place of c in u.
   int rate() const { return rate_; }
-  /// q (nq) for each of these places [rad or m]; false where one is not reached: why() says which.
+  /// q (nq) at each place [rad or m]; false where one is not reached: why() says which.
   /// Cost: a dense factorisation of nv + 1 for each tenth of a radian on the way
   bool reach(const std::vector<double>& places, std::vector<Eigen::VectorXd>& q);
   /// The same, with tangents.
   bool reach(const std::vector<double>& places, std::vector<CurvePoint>& points);
-  /// u and u̇ (nv) there while c has this rate [rad/s or m/s] and no acceleration; false at a dead
-  /// point: why() says so.
+  /// u and u̇ (nv) at `at` while c has this rate [rad/s or m/s] and no acceleration; false at a
+  /// dead point: why() says so.
   bool rates(const CurvePoint& at, double rate, Eigen::VectorXd& u, Eigen::VectorXd& udot);
-  /// What can be reached: places `by` apart, at most half a turn of an angle to each side of the
-  /// start, at most `most` of them, ascending, and their poses.
+  /// Reachable places, ascending, and their poses: `by` apart, at most `most` beside the start, of
+  /// an angle within half a turn of it.
   void sample(double by, int most, std::vector<double>& places, std::vector<Eigen::VectorXd>& q);
-  /// In one sentence, without its full stop.
+  /// A sentence without full stop.
   const std::string& why() const { return why_; }
 
   /// Unit in which steps along c are counted [rad or m].

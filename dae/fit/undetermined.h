@@ -1,5 +1,5 @@
 #pragma once
-// Which parameters a fit leaves open: null vectors of ∂r/∂θ, once s_i follow as they may.
+// Parameters that a fit leaves open: null vectors of ∂r/∂θ while s_i follow freely.
 
 #include <Eigen/Core>
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace momenta {
 
-/// One sentence that names them; empty: each matters by itself. `by`: ∂r/∂θ, columns in units of
-/// the parameters' sizes; `along`: ∂r/∂s, no columns where s is given.
+/// One sentence that names these parameters; empty: each matters by itself. `by`: ∂r/∂θ, columns in
+/// units of the parameters' sizes; `along`: ∂r/∂s, no columns where s is given.
 std::string undetermined_in_words(const std::vector<std::string>& names, Eigen::MatrixXd by,
                                   const Eigen::MatrixXd& along);
 

@@ -19,7 +19,7 @@ namespace momenta {
 
 class WantedError {
  public:
-  /// `sizes` as of PoseDerivatives. The family must outlive it.
+  /// `sizes` as in PoseDerivatives. The family must outlive it.
   WantedError(const ParametricMechanism& family, std::string sweep, WantedPoses wanted,
               Eigen::VectorXd sizes);
 
@@ -29,15 +29,15 @@ class WantedError {
   int unknowns() const { return parameters() + (free() ? static_cast<int>(wanted_.poses()) : 0); }
   int residuals() const { return static_cast<int>(asked_.size()); }
 
-  /// θ, and s_i, where they are unknowns, at the nearest of 360 places of the path. False where the
-  /// mechanism cannot be assembled: why() says why.
+  /// x at these parameters, with unknown s_i at the nearest of 360 places of the path. False
+  /// without a mechanism or finite path: why() says why.
   bool start(const Eigen::VectorXd& parameters, Eigen::VectorXd& x);
-  /// r, and ∂r/∂x where it is asked for. False where there is no such mechanism, a pose is not
-  /// reached, or has no derivatives: why() says which.
+  /// r, and ∂r/∂x unless null. False where the mechanism cannot be assembled, a pose is not reached
+  /// or has no derivatives: why() says which.
   bool evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian);
-  /// y (poses × quantities) [rad or m] of the last evaluation that succeeded.
+  /// y (poses × quantities) [rad or m] of the last success.
   const Eigen::MatrixXd& reached() const { return reached_; }
-  const std::string& why() const { return why_; }  ///< one sentence, without its full stop
+  const std::string& why() const { return why_; }  ///< a sentence without full stop
 
  private:
   struct Asked {
@@ -56,18 +56,18 @@ class WantedError {
   std::string why_;
 };
 
-/// How large residuals are.
+/// Sizes of residuals.
 struct WantedErrors {
   /// Not measured.
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   double cost = none;         ///< ½ |r|² [1]
   double length_rms = none;   ///< over all wanted lengths [m]; NaN: there are none
   double length_most = none;  ///< the largest [m]
-  double angle_rms = none;    ///< the same of angles [rad]
+  double angle_rms = none;    ///< the same for angles [rad]
   double angle_most = none;   ///< the largest [rad]
 };
 
-/// Of what the poses come to (poses × quantities), with r there.
+/// Errors of the reached poses (poses × quantities), with their r.
 WantedErrors errors_of(const WantedPoses& wanted, const Eigen::MatrixXd& reached,
                        const Eigen::VectorXd& r);
 

@@ -1,7 +1,7 @@
 #pragma once
-// What a mechanism is to do, from a CSV: a line a pose, columns named like those of move.csv. One
-// of them may be the swept coordinate: then each line says where it stands, else that is free and
-// only the path counts. An empty cell asks for nothing.
+// Wanted poses of a mechanism, from a CSV: a line per pose, columns named like those of move.csv.
+// One may be the swept coordinate; without it that is free and only the path counts. An empty cell
+// asks for nothing.
 
 #include <momenta/dae/mechanism.h>
 
@@ -12,7 +12,7 @@
 
 namespace momenta {
 
-/// What is asked of the poses of a mechanism.
+/// Wanted quantities, pose by pose.
 struct WantedPoses {
   /// A column: a coordinate of q, or a component of the position of a marker.
   struct Quantity {
@@ -20,13 +20,13 @@ struct WantedPoses {
     std::string unit;     ///< "m"
     int coordinate = -1;  ///< place in q; −1: of a marker
     int marker = -1;      ///< place among the markers; −1: a coordinate
-    int component = 0;    ///< of the marker's position: 0, 1, 2 for x, y, z
+    int component = 0;    ///< 0, 1, 2 for x, y, z of the marker's position
   };
   std::string file;                  ///< for messages
   std::vector<Quantity> quantities;  ///< without the swept coordinate
-  std::vector<double> swept;         ///< where it stands, pose by pose [rad or m]; empty: free
-  Eigen::MatrixXd values;            ///< poses × quantities [rad or m]; NaN: nothing is asked
-  /// How many there are.
+  std::vector<double> swept;         ///< swept coordinate by pose [rad or m]; empty: free
+  Eigen::MatrixXd values;            ///< poses × quantities [rad or m]; NaN: not asked
+  /// Count of poses.
   Eigen::Index poses() const { return values.rows(); }
 };
 

@@ -21,7 +21,7 @@ struct Distribution {
 
   Kind kind = Kind::choice;
   double a = 0, b = 0;
-  std::vector<double> values;  ///< of a choice
+  std::vector<double> values;  ///< choice only
 
   /// @pre 0 < u < 1
   double quantile(double u) const;

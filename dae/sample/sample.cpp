@@ -16,7 +16,7 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Streams of noise of one column: what is drawn in it, and its order or its shift.
+/// Streams of noise of a column: its draws, and its order or shift.
 std::uint64_t drawn(std::size_t column) {
   return 2 * static_cast<std::uint64_t>(column);
 }

@@ -3,7 +3,7 @@
 //
 //     random   every coordinate is drawn by itself
 //     latin    Latin hypercube: each quantity has one of its N values in each of the N intervals
-//              (i/N, (i+1)/N), which in an order of its own (McKay, Beckman, Conover, Technometrics
+//              (i/N, (i+1)/N), in a random order of its own (McKay, Beckman, Conover, Technometrics
 //              21 (1979), 239-245)
 //     sobol    the Sobol' sequence with a digital shift: a random number of 32 bits for each
 //              quantity, ⊕ to its coordinates, which leaves every net a net
@@ -13,8 +13,7 @@
 // are the cases, N (d + 2) of them: case j (d + 2) is row j of A, the next that of B, the next d
 // those of A_B^(1) … A_B^(d) (A. Saltelli et al., Comput. Phys. Commun. 181 (2010), 259-270).
 //
-// A coordinate is a function of seed, quantity and number alone: it is the same whoever asks for
-// it.
+// A coordinate is a function of seed, quantity and number alone.
 
 #include <momenta/dae/sample/sobol_sequence.h>
 
@@ -35,8 +34,8 @@ struct SampleSettings {
   bool indices = false;  ///< A, B and A_B^(i) in place of one matrix
 };
 
-/// `kind`: "random", "latin" or "sobol"; empty: nothing, and then no point, seed or index is asked
-/// for. What is not given is as above. @throws std::invalid_argument
+/// `kind`: "random", "latin" or "sobol"; empty: no sample. Missing settings keep their defaults.
+/// @throws std::invalid_argument for another kind, or for settings without a kind
 std::optional<SampleSettings> sample_settings(const std::string& kind,
                                               const std::optional<std::size_t>& points,
                                               const std::optional<std::uint64_t>& seed,
@@ -46,8 +45,8 @@ class Sample {
  public:
   static constexpr std::size_t most_cases = 10'000'000;
 
-  /// @throws std::invalid_argument for no points, more than most_cases, or more quantities than the
-  /// Sobol' sequence has dimensions (half of them with indices).
+  /// @throws std::invalid_argument for no points, more than most_cases, or more quantities than
+  /// Sobol' dimensions (half of them with indices).
   Sample(const SampleSettings& settings, std::size_t quantities);
 
   const SampleSettings& settings() const { return settings_; }
@@ -55,7 +54,7 @@ class Sample {
   /// N, or N (d + 2).
   std::size_t cases() const { return settings_.points * cases_of_a_point(); }
   std::size_t cases_of_a_point() const { return settings_.indices ? quantities_ + 2 : 1; }
-  /// In (0, 1).
+  /// Coordinate in (0, 1).
   double at(std::size_t number, std::size_t quantity) const;
 
  private:
@@ -64,15 +63,15 @@ class Sample {
   SampleSettings settings_;
   std::size_t quantities_;
   std::optional<SobolSequence> sobol_;
-  std::vector<std::uint32_t> shifts_;               ///< of sobol, one a column
-  std::vector<std::vector<std::uint32_t>> strata_;  ///< of latin, one a column: intervals in turn
+  std::vector<std::uint32_t> shifts_;               ///< sobol: one per column
+  std::vector<std::vector<std::uint32_t>> strata_;  ///< latin: intervals in turn, by column
 };
 
-/// 64 bits that look random and are a function of these three (the output function of SplitMix64:
-/// G. Steele, D. Lea, C. Flood, OOPSLA 2014, applied to each in turn).
+/// 64 pseudorandom bits, a function of the arguments alone (the output function of SplitMix64: G.
+/// Steele, D. Lea, C. Flood, OOPSLA 2014, applied to each in turn).
 std::uint64_t noise(std::uint64_t seed, std::uint64_t stream, std::uint64_t number);
 
-/// Of 64 random bits a number in (0, 1): the middle of one of 2⁵² intervals.
+/// Number in (0, 1) from 64 random bits: the middle of one of 2⁵² intervals.
 double in_unit_interval(std::uint64_t bits);
 
 }  // namespace momenta

@@ -10,7 +10,7 @@ namespace momenta {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Of the rows that a bootstrap draws: beside the streams of a sample's columns.
+/// Stream of the bootstrap's draws, apart from those of a sample's columns.
 constexpr std::uint64_t bootstrap_stream = 1ull << 40;
 
 /// Terms of the estimates, one row each: f(A) + f(B), f(A)² + f(B)², and for each quantity
@@ -62,7 +62,7 @@ class Terms {
   std::vector<double> terms_;
 };
 
-/// Mean and deviation as numbers come.
+/// Running mean and deviation.
 struct Spread {
   double count = 0, mean = 0, squares = 0;
   void take(double x) {

@@ -11,9 +11,9 @@
 //     S_Ti ≈ 1/2N Σ_j (f(A)_j - f(A_B^(i))_j)² / V             (Jansen 1999)
 //
 // with V the variance of f over the rows of A and B. Their errors: the standard deviation of the
-// same estimates of samples of N rows drawn from the N with replacement (bootstrap). It takes the
-// rows as independent, which those of a Latin hypercube or a Sobol' sequence are not: of these the
-// true error is smaller as a rule.
+// same estimates of samples of N rows drawn from the N with replacement (bootstrap). The bootstrap
+// takes the rows as independent, which those of a Latin hypercube or a Sobol' sequence are not:
+// their true error is smaller as a rule.
 //
 // Sources: I. M. Sobol', Math. Comput. Simul. 55 (2001), 271-280; A. Saltelli et al., Comput. Phys.
 // Commun. 181 (2010), 259-270; M. J. W. Jansen, ibid. 117 (1999), 35-43; T. Homma, A. Saltelli,
@@ -30,14 +30,13 @@ struct SobolIndex {
 };
 
 struct SobolIndices {
-  std::size_t rows = 0;  ///< j for which all d + 2 values are numbers; others are left out
-  double variance;       ///< V
-  std::vector<SobolIndex>
-      of;  ///< one a quantity; NaN where f does not vary or rows are fewer than 2
+  std::size_t rows = 0;        ///< rows whose d + 2 values are all finite; others are left out
+  double variance;             ///< V
+  std::vector<SobolIndex> of;  ///< by quantity; NaN where f is constant or rows < 2
 };
 
-/// `f`: of the cases in the order of sample.h, N (d + 2) of them; no number: the case failed.
-/// Cost: N d times `resamples`. @throws std::invalid_argument for another number of values
+/// `f`: values of the N (d + 2) cases in the order of sample.h, not finite for failed ones. Cost: N
+/// d times `resamples`. @throws std::invalid_argument for another number of values
 SobolIndices sobol_indices(const std::vector<double>& f, std::size_t quantities,
                            std::uint64_t seed = 1, int resamples = 500);
 

@@ -13,7 +13,7 @@ struct Start {
   std::uint32_t m[9];
 };
 
-/// Of dimension 1 all m_k are 1; of dimensions 2, 3, …:
+/// Dimensions 2, 3, …; in dimension 1 all m_k are 1.
 constexpr Start starts[SobolSequence::most_dimensions - 1] = {
     // clang-format off
     {1, 0, {1}},

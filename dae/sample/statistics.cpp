@@ -23,7 +23,7 @@ Summary summary_of(std::vector<double> x) {
   if (x.empty()) return s;
   std::sort(x.begin(), x.end());
   const auto n = static_cast<double>(x.size());
-  // About the middle value, so that a small spread about a large number is not lost.
+  // Sums about the middle value keep a small spread about a large number.
   const double middle = x[x.size() / 2];
   double sum = 0, squares = 0;
   for (const double value : x) sum += value - middle;

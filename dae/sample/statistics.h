@@ -1,5 +1,5 @@
 #pragma once
-// What a sample says of one quantity.
+// Summary statistics of one quantity over a sample.
 
 #include <array>
 #include <cstddef>
@@ -10,13 +10,13 @@ namespace momenta {
 inline constexpr std::array<double, 5> told_quantiles{0.05, 0.25, 0.5, 0.75, 0.95};
 
 struct Summary {
-  std::size_t count = 0;   ///< values that are numbers; of fewer than one all below is NaN
-  double mean, deviation;  ///< deviation: with n - 1, NaN of one value
+  std::size_t count = 0;   ///< finite values; if none, all below is NaN
+  double mean, deviation;  ///< deviation: with n - 1, NaN for one value
   double least, greatest;
   std::array<double, told_quantiles.size()> quantiles;
 };
 
-/// Values that are no finite numbers are left out; `count` says how many there are. Cost: a sort.
+/// Values that are not finite are left out. Cost: a sort.
 Summary summary_of(std::vector<double> values);
 
 /// x_(⌊h⌋) + (h - ⌊h⌋) (x_(⌊h⌋+1) - x_(⌊h⌋)), h = (n - 1) p, of sorted x_0 … x_(n-1): definition 7

@@ -1,7 +1,7 @@
 #pragma once
-// Whether runs of one motion ended on different branches of it. Where runs that are to be relied on
-// end in different poses, and met a singular pose on the way, it was chance which of the motions
-// that meet there each followed, whatever a single run saw of it: none is the motion.
+// Whether runs of one motion ended on different branches of it. Where reliable runs end in
+// different poses behind a singular pose, chance chose which of the motions that meet there each
+// followed, whatever a single run saw of it: none is the motion.
 
 #include <momenta/dae/study/run_result.h>
 
@@ -13,10 +13,10 @@ namespace momenta {
 struct Ambiguity {
   bool differ = false;
   double from = not_measured;  ///< the first singular pose [s]
-  double apart = 0;            ///< how far poses at the end are, in radians or lengths of the scene
+  double apart = 0;            ///< largest difference of end poses [rad or lengths of the scene]
 };
 
-/// Of the runs of the tightest tolerance that reached the end.
+/// Compares the runs of the tightest tolerance that reached the end.
 Ambiguity ambiguity_of(const std::vector<RunResult>& runs);
 
 /// One clause. @pre they differ

@@ -1,5 +1,5 @@
 #pragma once
-// When the loops of a run have come apart, so that the run continues with another mechanism.
+// Loops of a run that come apart, so that it continues with another mechanism.
 //
 // Each equation is judged in its own unit: points in lengths of the scene, axes in radians,
 // couplers in the natural size of their terms (LoopUnits). With |Φ|∞ in these units
@@ -34,13 +34,13 @@ class Apart {
       least_ = std::clamp(1e4 * s.rtol, 1e-6, most);
   }
 
-  /// |Φ|∞ in those units.
+  /// |Φ|∞ in LoopUnits.
   double gap(const Eigen::VectorXd& phi) { return gap(phi, worst_); }
-  /// And of which row. Of Φ̇ alike.
+  /// The same, and its row; Φ̇ alike.
   double gap(const Eigen::VectorXd& phi, Eigen::Index& row) const {
     return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&row);
   }
-  /// |Φ|₂ that rounding leaves of rows of lengths [m], or of angles [rad], with room.
+  /// Rounding of |Φ|₂, of rows in m or, with `angles`, in rad, with room.
   double rounding(bool angles) const {
     constexpr double room = 10;
     double sum = 0;
@@ -61,8 +61,7 @@ class Apart {
         pose[static_cast<std::size_t>(body.q + i)] /= units_.rates[body.u + i];
     return pose;
   }
-  /// One sentence where the loops have come apart at t [s]; empty where they hold. `at_sample`:
-  /// after all corrections.
+  /// One sentence if the loops are apart at t [s]; else empty. `at_sample`: after all corrections.
   std::string found(double t, const Eigen::VectorXd& phi, bool at_sample) {
     const double open = gap(phi), limit = at_sample ? least_ : most;
     if (open <= limit) return "";

@@ -8,7 +8,7 @@
 
 namespace momenta {
 
-/// Where a column stands, named with its unit or without: "B.x [m]" or "B.x".
+/// Place of a column, named with its unit or without: "B.x [m]" or "B.x".
 inline std::optional<std::size_t> column_named(const std::vector<std::string>& columns,
                                                const std::string& name) {
   const auto found = std::find_if(columns.begin(), columns.end(), [&](const std::string& c) {

@@ -15,7 +15,7 @@ struct Constraint {
     invariant  ///< kept by solutions, asked by no equation: the start alone sees to it
   };
   Origin origin = Origin::given;
-  int differentiations = 0;            ///< ν at which the array first has it
+  int differentiations = 0;            ///< least ν that shows it
   int per_rate = 0, per_loop_row = 0;  ///< equations: per_rate · nv + per_loop_row · m
   std::string equation;
   std::string gives;  ///< the unknown it determines; empty: none
@@ -23,12 +23,12 @@ struct Constraint {
 
 struct FormInWords {
   std::string x, s;        ///< symbols of the second block of unknowns and of its multipliers
-  std::string solved;      ///< ODE forms: what is solved at each evaluation
+  std::string solved;      ///< ODE forms: system solved at each evaluation
   bool penalised = false;  ///< ODE forms: with M + Φ_qᵀαΦ_q in place of (M Φ_qᵀ; Φ_q 0)
   std::vector<Constraint> constraints;
 };
 
-/// Empty symbols and lists for a form this file does not know.
+/// Words for a form; empty for an unknown one.
 FormInWords in_words(const std::string& form);
 
 const char* name_of(Constraint::Origin origin);

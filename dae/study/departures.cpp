@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-constexpr double tolerances = 10;  // that may add up in an energy of the state
+constexpr double tolerances = 10;  // how many may add up in an energy of the state
 constexpr double way_at_rest = 1e-3;
 
 }  // namespace

@@ -3,12 +3,12 @@
 //
 //   energy   |E(t) − E(0)|  over  max (T + |V − V(0)|) + ∫ Σ|P| dt,   the energy turned over, P of
 //            dampers, friction and formulas, of drives, and of impacts; V also in the middle of
-//            steps, with loops. Of a tree a few samples do not tell it, and judge no energy
+//            steps, with loops; trees with few samples are not judged
 //   rates    |Φ̇|∞ over the fastest rate of a joint, both in the units of LoopUnits
 //
-// Beyond the shares `told` the run is done, and says so first; beyond `apart` what it did is no
-// motion of this mechanism, and it came apart. An energy below what the tolerance leaves of those
-// in the state is none, nor is a rate that moves a joint by less than a thousandth over the run.
+// Beyond the shares `told` the run is done, with a warning; beyond `apart` it came apart: its
+// motion is none of this mechanism. Energies below what the tolerance leaves of those in the state
+// count as none, as do rates that move a joint by less than a thousandth over the run.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/memory.h>
@@ -39,15 +39,15 @@ class Departures {
     memory(opening_), memory(row_), memory(at_), memory(fastest_);
   }
 
-  /// [J], up to the last sample.
+  /// Energy turned over up to the last sample [J].
   double turned_over() const { return turned_over_; }
 
-  /// The verdict on a run that reached its end: `departure`, or status and reason. @pre the largest
-  /// error of energy is in it
+  /// The verdict on a run that reached its end: `departure`, or status and reason. @pre
+  /// run.energy_error_max is set
   void judge(RunResult& run) const;
 
  private:
-  /// When a share of what was turned over until then was first passed [s]; NaN: it was not.
+  /// Time at which a share of the energy turned over was first passed [s]; NaN: never.
   struct Beyond {
     double from = not_measured;
     void look(double t, bool beyond) {
@@ -59,13 +59,13 @@ class Departures {
   void judge_rates(RunResult& run) const;
 
   const Mechanism& mechanism_;
-  double still_;    ///< a rate that is none [1/s]
-  double at_rest_;  ///< an energy that is none, but for those in the state [J]
+  double still_;    ///< rates below count as none [1/s]
+  double at_rest_;  ///< part of floor() beside energies in the state [J]
   double of_state_;
   Beyond beyond_told_, beyond_apart_;
   double largest_energy_ = 0;                  ///< T + |V| at the samples [J]
   double exchanged_ = 0, turned_over_ = 0;     ///< largest T + |V − V(0)|; with ∫ Σ|P| [J]
-  double opening_ = 0, at_ = 0, fastest_ = 0;  ///< largest |Φ̇|∞, and when
+  double opening_ = 0, at_ = 0, fastest_ = 0;  ///< largest |Φ̇|∞, its time, fastest rate
   Eigen::Index row_ = 0;
 };
 

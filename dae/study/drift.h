@@ -7,16 +7,15 @@
 
 namespace momenta {
 
-/// |x|₂ of rows in m, and of rows in rad.
 struct Drift {
   double lengths = 0, angles = 0;
   bool finite() const { return std::isfinite(lengths) && std::isfinite(angles); }
-  /// What is called the drift of a mechanism: of lengths, where it has any.
+  /// The drift of a mechanism: of lengths if it has any, else of angles.
   double named(const Mechanism& mechanism) const {
     return mechanism.has_lengths() ? lengths : angles;
   }
 };
-/// Of x (m), by the rows of Φ. O(m)
+/// Drift of x (m), by rows of Φ. O(m)
 inline Drift drift_of(const Mechanism& mechanism, const Eigen::VectorXd& x) {
   if (!mechanism.has_angles()) return {x.norm(), 0};
   if (!mechanism.has_lengths()) return {0, x.norm()};

@@ -44,12 +44,12 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     const bool asked = !request.forms.empty();
     // Without loops all forms are one of two ODEs.
     if (!loops && !asked && form != "momentum" && form != "acceleration") continue;
-    // What a multistep method cannot take is refused where it was asked for.
+    // Forms that a multistep method cannot take are left out, unless asked for.
     if (!one_step && !asked && needs_one_step_method(form)) continue;
     const bool gauged = takes_gauge(form);
     if (is_dae_form(form)) {
       add(form, !gauged ? "" : request.gauge.empty() ? leak : request.gauge, false);
-      // Where there is a step, the methods of fixed steps that are made for this form too.
+      // With a step, also the fixed-step methods made for this form.
       for (const Integrator& method : integrators())
         if (request.step > 0 && method.step == Integrator::Step::fixed && !method.forms.empty() &&
             method.takes_form(form, true)) {
@@ -98,7 +98,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
       going = false;
     return going.load();
   };
-  // Watched side by side; what they take is measured after it, one at a time.
+  // Runs are watched side by side, and timed afterwards, one at a time.
   share(request.threads, runs.size(), [&](std::size_t i) {
     if (!going) return;
     const std::string key = key_of(runs[i]);
@@ -120,7 +120,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     results[i] = *std::move(result);
     there[i] = 1;
   });
-  // Of a study that was interrupted: those that were begun.
+  // An interrupted study keeps the runs that were begun.
   std::size_t kept = 0;
   for (std::size_t i = 0; i < results.size(); ++i)
     if (there[i]) {

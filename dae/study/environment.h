@@ -5,20 +5,19 @@
 
 namespace momenta {
 
-/// Of momenta: "0.1.0".
+/// Version of momenta: "0.1.0".
 const char* version();
 
-/// Processor, compiler, flags, versions of the libraries, date: what stands beside every figure.
+/// Processor, compiler, flags, versions of the libraries, date.
 Environment environment();
 
-/// Tells this build of the program on this processor from others: what may change a result's
-/// digits.
+/// Digest of this build and processor, on which a result's digits may depend.
 std::string build_digest();
 
-/// How many threads to run: those asked for, or with 0 one for each processor.
+/// Number of threads: as asked, or for 0 one per processor.
 int threads_of(int asked);
 
-/// 64-bit FNV-1a digest of a text, in hexadecimal: tells one scene from another, nothing more.
+/// 64-bit FNV-1a digest of a text, in hexadecimal, to tell scenes apart.
 std::string digest(std::string_view text);
 
 }  // namespace momenta

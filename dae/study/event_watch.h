@@ -23,13 +23,13 @@ namespace momenta {
 
 class EventWatch {
  public:
-  /// Which event, and its crossing.
+  /// An event and its crossing.
   struct Found {
     std::size_t event;
     Crossing crossing;
   };
-  /// Reads q (nq), and where asked u (nv), at a time in the last step off its dense output, or off
-  /// the exact one; false: it cannot be read.
+  /// Reads q (nq), and u (nv) if `rates`, at a time in the last step, off the dense or the exact
+  /// output; false: not readable.
   using Read = std::function<bool(double t, bool exact, bool rates, const Eigen::VectorXd*& q,
                                   const Eigen::VectorXd*& u)>;
 
@@ -51,23 +51,23 @@ class EventWatch {
       of_event_.emplace_back([this, k](double t) { return value(t, k, false); });
   }
 
-  /// Whether it ends the run, or its phase.
+  /// Whether the event ends the run or its phase.
   bool ends(const Found& f) const { return is_stop(f) || events_[f.event].stop; }
-  /// Whether it is that of a rigid stop, number `event` less this.
+  /// Whether the event is of a rigid stop, number `event` − first_stop().
   bool is_stop(const Found& f) const { return f.event >= events_.size(); }
   std::size_t first_stop() const { return events_.size(); }
   std::string name(std::size_t k) const { return name_of(events_[k], k); }
-  /// Whether the method has an output that is more accurate than its dense one.
+  /// Tells that the method has an output more accurate than its dense one.
   void has_exact() { exact_ = true; }
 
-  /// The events of a step, in the order of time, up to the first that ends the run or its phase,
-  /// and those of stops at that very time.
+  /// Events of a step by time, up to the first that ends the run or its phase, and stops at that
+  /// very time.
   const std::vector<Found>& step(double t0, double t1, std::vector<std::string>& remarks) {
     found_.clear();
     passed_.clear();
     for (std::size_t k = 0; k < first_stop(); ++k) signs_[k] = crossings_[k].sign();
-    // Behind an impact the next one may follow within the step, and not before the pause is over:
-    // what a dense output shows of that stop before is its error.
+    // The next impact at a stop may follow within the step, but not before the pause is over:
+    // earlier roots are errors of the dense output.
     if (pause_until_ > t0 && pause_until_ < t1) {
       const double until = pause_until_;
       interval(t0, until, remarks);
@@ -90,7 +90,7 @@ class EventWatch {
     return found_;
   }
 
-  /// Behind an impact or a release: the numbers of stops begin anew.
+  /// Restarts the crossings of stops after an impact or a release.
   void restart(double t) {
     for (std::size_t k = first_stop(); k < all_events_; ++k)
       if (stops_->ends_upwards(k - first_stop()))
@@ -123,9 +123,9 @@ class EventWatch {
       }
     }
   }
-  /// At a stop, with those that are met at the same time. The rest of the step is no motion: the
-  /// numbers of events have the signs of the time before it, so that one that the impact turns is
-  /// told at the start of the next phase.
+  /// Ends the phase at a stop, and stops met at the same time. The rest of the step is no motion:
+  /// events keep the signs from before t, so that one turned by the impact is found as the next
+  /// phase begins.
   void phase_ends(double t) {
     const double same = 10 * tolerance_;
     for (std::size_t k = 0; k < first_stop(); ++k) {
@@ -185,7 +185,7 @@ class EventWatch {
     return std::isnan(found) ? 0.5 * (a + b) : found;
   }
 
-  /// Said once of each event.
+  /// Remarks, once per event, that it has no value.
   void note_missing(std::size_t k, double t0, double t1, const Crossings::Values& values,
                     std::vector<std::string>& remarks) {
     if (told_[k]) return;
@@ -201,8 +201,8 @@ class EventWatch {
 
   std::vector<EventSpec> events_;
   RigidStops* stops_;
-  std::size_t all_events_;  ///< with the numbers of stops behind them
-  double pause_until_ = 0;  ///< before which what was met is not met again [s]
+  std::size_t all_events_;  ///< count of events and stops
+  double pause_until_ = 0;  ///< before it no stop is met again [s]
   EventValues values_;
   double tolerance_;
   Read read_;
@@ -212,8 +212,8 @@ class EventWatch {
   std::vector<std::vector<double>> at_points_;
   std::vector<double> all_;
   std::vector<std::function<double(double)>> of_event_;
-  std::vector<Found> found_, passed_;  ///< of the step, and those of directions that are not told
-  std::vector<int> signs_;             ///< of events, before the step
+  std::vector<Found> found_, passed_;  ///< events of the step, and in other directions
+  std::vector<int> signs_;             ///< signs of events before the step
   std::vector<Crossing> of_one_;
 };
 

@@ -7,8 +7,7 @@
 namespace momenta {
 namespace {
 
-/// Whether coordinate i of q, or of what drives count, is a length; of u alike, since quaternions
-/// come last.
+/// Whether coordinate i of q, or of drives, is a length; the same for u, as quaternions come last.
 bool is_length(JointKind kind, int i) {
   switch (kind) {
     case JointKind::prismatic:
@@ -33,7 +32,7 @@ bool is_length(LoopKind kind, int i) {
       return i == 0;
     case LoopKind::planar:
       return i < 2;
-    default:  // of a coupler too: its ratios take the unit
+    default:  // couplers too: their ratios take the unit
       return false;
   }
 }

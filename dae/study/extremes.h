@@ -28,11 +28,11 @@
 
 namespace momenta {
 
-/// What one metre, second and kilogram of a scene become; all positive and finite.
+/// Values of one metre, second and kilogram in the new units; positive, finite.
 struct Units {
   double length = 1, time = 1, mass = 1;
 };
-/// @pre no formulas in it
+/// @pre no formulas in the scene
 Scene in_units(Scene scene, const Units& units);
 
 /// The same scene in a room turned by `rotation`: ground's axes are others, the motion is the same.
@@ -42,7 +42,7 @@ Scene turned(Scene scene, const Eigen::Quaterniond& rotation);
 enum class Extreme { stiffness, damping, mass_ratio, size, speed, duration };
 const char* name_of(Extreme extreme);
 
-/// Why a scene has no such extreme: nothing of the kind in it; empty when it has.
+/// Reason why a scene has no such extreme; empty: it has.
 std::string lacks(const Scene& scene, Extreme extreme);
 
 /// `scene` with one of its directions times `factor`. @pre lacks() is empty, factor > 0

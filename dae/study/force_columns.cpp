@@ -8,7 +8,7 @@ namespace momenta {
 namespace {
 
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
-/// Of the largest change between two solutions: what is less is rounding over weak pivots.
+/// Part of the largest change between two solutions; less is rounding over weak pivots.
 constexpr double rounding = 1e-6;
 
 }  // namespace
@@ -73,7 +73,7 @@ void ForceColumns::append_efforts(std::vector<double>& row, std::vector<std::siz
   efforts_.assign(efforts_.size(), not_there);
   if (found_) sweep_->efforts(efforts_.data());
   if (idle_.size() > 0) {
-    // Efforts are affine in λ: what the idle multipliers add, with nothing moving.
+    // Efforts are affine in λ: the part of the idle multipliers, with nothing moving.
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(lambda_.size());
     sweep_->move(t_, q_.data(), rest_.data(), rest_.data(), none.data());
     sweep_->efforts(without_.data());

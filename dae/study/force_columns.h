@@ -1,11 +1,10 @@
 #pragma once
 // The forces at a state of the motion, as columns of the trajectory: λ of the loops, the efforts of
-// drives, the reactions of joints where they are asked for. All with u̇ and λ of (3) at (t, q, u),
-// the same definition for every form.
+// drives, the reactions of joints where they are asked for. All are of u̇ and λ of (3) at (t, q,
+// u), for every form.
 //
-// Where redundant loops leave λ open, its columns hold one of the solutions, beside how many of
-// them are not unique; efforts and reactions that differ between the solutions are left out (not a
-// number), those that are the same in all are given.
+// Where redundant loops leave λ open, its columns hold one solution, beside how many of them are
+// not unique; efforts and reactions that differ between the solutions are NaN.
 
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/multipliers.h>
@@ -23,17 +22,16 @@ class ForceColumns {
   ForceColumns(const Mechanism& mechanism, Evaluation<double>& e, LoopSolver* solver,
                bool reactions);
 
-  /// Solves (3) at (t, q, u); what has no solution is not a number. Cost: that of a solution of
-  /// (3), twice where rows have faded.
+  /// Solves (3) at (t, q, u); NaN without a solution. Cost: a solution of (3), two if rows faded.
   void solve(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
-  /// After solve(): u̇ (nv) and λ (m) known to more digits, in place of those found.
+  /// Replaces u̇ (nv) and λ (m) after solve() by more accurate ones.
   void take(const Eigen::VectorXd& udot, const Eigen::VectorXd& lambda);
   /// λ (m), after solve().
   const Eigen::VectorXd& lambda() const { return lambda_; }
-  /// Which of them are unique (m); all, where there is no solution.
+  /// Whether each λ is unique (m); all without a solution.
   const std::vector<bool>& unique() const { return unique_rows_; }
-  /// Appends the columns of trajectory_columns() after the drifts, and to `not_unique` the places
-  /// of those that are not. With reactions O(bodies + loops).
+  /// Appends the columns of trajectory_columns() after the drifts; `not_unique`: places of those
+  /// that are not. With reactions O(bodies + loops).
   void append(std::vector<double>& row, std::vector<std::size_t>& not_unique);
 
  private:

@@ -15,7 +15,7 @@ namespace momenta {
 
 namespace {
 
-/// Why a method cannot take the form as it is set, one sentence; empty: it can.
+/// Reason why a method cannot take the form so set, one sentence; empty: it can.
 std::string refusal(const Mechanism& mechanism, const Integrator& method, const RunSettings& s) {
   const bool dae = is_dae_form(s.form);
   const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
@@ -72,7 +72,7 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   options.penalty = s.penalty;
   form_ = make_form(s.form, mechanism, options, start);
   s.form = form_->name();
-  if (needs_one_step_method(s.form)) s.project = false;  // it corrects by its nature
+  if (needs_one_step_method(s.form)) s.project = false;  // these forms correct by themselves
   s.gauge = form_->momentum_like() && mechanism.m() > 0 ? form_->gauge().text() : "";
   std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
   s.beta = form_->beta();

@@ -12,7 +12,7 @@
 
 namespace momenta {
 
-/// A form with its integrator, ready to go; shared by the watched run and the timed ones.
+/// Shared by watched and timed runs.
 class FormRunner {
  public:
   /// Completes the settings: default integrator, the gauge in force, gains, how (7) is solved.
@@ -30,7 +30,7 @@ class FormRunner {
   void begin_with_step(double first_step) { options_.initial_step = first_step; }
   IntegrationResult integrate(const std::vector<double>& times, const Observer& observer);
   double changed_at() const { return changed_at_; }
-  /// The next integration goes on with what another one carried.
+  /// Lets the next integration continue another one.
   void go_on_from(const Memory& carried, double spent_cpu_seconds) {
     options_.carried = &carried;
     options_.spent_cpu_seconds = spent_cpu_seconds;

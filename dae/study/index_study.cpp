@@ -35,7 +35,7 @@ RankFound rank_of(Eigen::MatrixXd matrix) {
   return rank_by_gap(values, values[0]);
 }
 
-/// The verdict of kkt/loop_rank.h.
+/// Rank of Φ_q by kkt/loop_rank.h.
 RankFound rank_of_loops(const Mechanism& mechanism, const Start& start) {
   const auto e = mechanism.evaluation<double>();
   e->place(start.t, start.q.data());
@@ -145,7 +145,7 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
                            const std::function<bool(const std::string& form)>& progress) {
   if (forms.empty())
     forms = mechanism.m() > 0 ? form_names() : std::vector<std::string>{"momentum", "acceleration"};
-  for (const auto& form : forms) is_dae_form(form);  // an unknown name is told before anything runs
+  for (const auto& form : forms) is_dae_form(form);  // throws for an unknown name
   const int smallest = mechanism.nq() + mechanism.nv() + mechanism.m();
   if (smallest > index_limit)
     throw SceneError(mechanism.scene().where({}) +

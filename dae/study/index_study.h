@@ -18,7 +18,7 @@ struct UnknownBlock {
   int size = 0;
   bool algebraic = false;       ///< its derivative is not in the equations
   bool tested = false;          ///< takes part in IDA's error test here
-  bool in_newton_norm = false;  ///< and in the norm that ends Newton's method
+  bool in_newton_norm = false;  ///< takes part in the norm that ends Newton's method
   int determined_after = -1;    ///< differentiations that determine its derivative; −1: none did
 };
 
@@ -28,8 +28,8 @@ struct FormIndex {
   int unknowns = 0;
   FormInWords words;
 
-  // ODE forms: the linear system solved at each evaluation, (7) or (3); both have the matrix
-  // (M Φ_qᵀ; Φ_q 0); without loops, and for what decides the rank of penalty forms, M.
+  // ODE forms: rank of the system solved at each evaluation, (7) or (3), with the matrix (M Φ_qᵀ;
+  // Φ_q 0); of M without loops and for penalty forms.
   RankFound inner;
   int inner_size = 0;
 
@@ -37,7 +37,7 @@ struct FormIndex {
   IndexFound found;
   std::vector<UnknownBlock> blocks;
   bool semi_explicit = false;  ///< y' stands in F through independent columns alone
-  bool ida_holds = false;      ///< what BDF with variable steps is proved for
+  bool ida_holds = false;      ///< the proof for BDF with variable steps holds
   std::string ida;             ///< the verdict in a sentence, and what is done here
 
   /// "ODE", "2", "not defined", "not decided"
@@ -48,16 +48,16 @@ struct IndexStudy {
   std::string scene;
   double t = 0;
   int nq = 0, nv = 0, m = 0;
-  int nonholonomic = 0;  ///< of the m rows
-  RankFound loops;       ///< of Φ_q, without loops all zero
+  int nonholonomic = 0;  ///< such rows among the m
+  RankFound loops;       ///< rank of Φ_q; zero without loops
   std::vector<FormIndex> forms;
 };
 
-/// Unknowns of a form up to which its array is built.
+/// Most unknowns of a form whose array is built.
 inline constexpr int index_limit = 450;
 
 /// `forms` empty: all, without loops the two ODE forms. `progress` before each form; false stops.
-/// @throws std::invalid_argument for an unknown form, SceneError when the scene is too large.
+/// @throws std::invalid_argument for an unknown form, SceneError for too large a scene.
 IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
                            std::vector<std::string> forms,
                            const std::function<bool(const std::string& form)>& progress = {});

@@ -18,15 +18,15 @@ namespace momenta {
 
 class IntegratedWork {
  public:
-  /// Whether forces of the mechanism, its drives apart, have no potential.
+  /// Whether forces other than drives have no potential.
   static bool has_any(const Mechanism& mechanism) {
     return mechanism.scene().lagrangian ? mechanism.lagrangian().has_power
                                         : loses_energy(mechanism.scene());
   }
 
-  /// `power(t, watts, flow)` at times inside the step that was just taken: of all sources, and the
-  /// sum of their absolute values; false: no value, and the step counts as it was last known.
-  /// `inside`: the work up to times inside it will be asked for.
+  /// Takes the step just taken. `power(t, watts, flow)`: power of all sources, and the sum of
+  /// absolute values; false: no value, and older powers are used. `inside`: work up to times inside
+  /// the step will be asked for.
   template <class Power>
   bool step(double t0, double t1, bool inside, Power&& power) {
     work_ = until(end_);
@@ -48,27 +48,27 @@ class IntegratedWork {
     memory(power_.data(), power_.size());
   }
 
-  /// Adds work [J] that is done at once, at the end of what was looked at.
+  /// Adds work [J] done at once, at the end of the last step.
   void add(double work) {
     work_ = until(end_) + work;
     from_ = end_;
     turned_over_ += std::abs(work);
   }
 
-  /// What went in and out through all of them so far, to a few digits [J].
+  /// Energy in and out through all sources so far, to a few digits [J].
   double turned_over() const { return turned_over_; }
 
-  /// Up to a time in the last step [J].
+  /// Work up to a time in the last step [J].
   double until(double t) const {
     if (!(end_ > from_)) return work_;
     const double part = (t - from_) / (end_ - from_);
-    double mean = 0;  // of the power from from_ to t: exact, the polynomial's degree is below 10
+    double mean = 0;  // power from from_ to t: exact, the polynomial's degree is below 10
     for (std::size_t i = 0; i < five.size(); ++i) mean += weights[i] * power_at(part * five[i]);
     return work_ + mean * (t - from_);
   }
 
  private:
-  // On [0, 1].
+  // Gauss points and weights on [0, 1].
   static constexpr std::array<double, 5> five{0.046910077030668004, 0.23076534494715845, 0.5,
                                               0.76923465505284155, 0.95308992296933200};
   static constexpr std::array<double, 9> nine{

@@ -1,5 +1,5 @@
 #pragma once
-// What a reference may have columns of: the trajectory with its reactions, and behind them
+// Columns that a reference may have: the trajectory's with reactions, and behind them
 //
 //   JOINT.p     M u [N m s, N s], the momentum without Φ_qᵀσ: that part is the gauge's
 //   LOOP.impulse1, …  ∫λ dt from the start, by row of Φ [N s, N m s]: of momentum forms

@@ -18,7 +18,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Whether the linearised equations are those of any other time: along three directions.
+/// Checks, along three directions, that the linearised equations are constant in time.
 void expect_constant(const Mechanism& mechanism, const Equilibrium& at) {
   constexpr double same = 1e-7;
   std::mt19937 random(1);
@@ -113,7 +113,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
     const VectorXd saddle = at.q;
     at = settle_from(mechanism, at, way);
     at.steps += steps;
-    // It grows, but not downhill: a damper of negative value, say.
+    // The mode grows, but not downhill: a negative damper, say.
     if ((at.q - saddle).cwiseAbs().maxCoeff() < 1e-3 * aside) saddles = most_saddles - 1;
   }
   if (start.q.size() > 0) at.moved = (at.q - start.q).cwiseAbs().maxCoeff();
@@ -144,7 +144,7 @@ Film swing(const Mechanism& mechanism, const ModesResult& result, const Mode& mo
     if (mode.real) return amplitude * (-1 + 2.0 * k / intervals) * mode.shape.real();
     return amplitude * (mode.shape * std::polar(1.0, 2 * std::numbers::pi * k / intervals)).real();
   };
-  // How far a small amplitude takes the bodies.
+  // Motion of the bodies at a small amplitude.
   const double unit = probe / std::max(1e-300, largest_in_units(mechanism, mode.shape.cwiseAbs()));
   const Picture picture = picture_of(mechanism);
   Film probing{at.t, 0, {frame_of(at.q)}};

@@ -25,8 +25,8 @@ class MomentumError {
         moved_(error_.size()),
         prescribed_(error_.size()) {}
 
-  /// max |M v| / (1 + |reference|) at (t, q, u), `reference` (nv) up to Φ_qᵀc; not a number where
-  /// (7) has no solution, 0 without coordinates. Cost: a solution of (7). No allocation.
+  /// max |M v| / (1 + |reference|) at (t, q, u), `reference` (nv) up to Φ_qᵀc; NaN where (7) has no
+  /// solution, 0 without coordinates. Cost: a solution of (7). No allocation.
   double at(double t, const double* q, const double* u, const double* reference) {
     e_.place(t, q);
     e_.move(u);

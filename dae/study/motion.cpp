@@ -17,7 +17,7 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// What a loop leaves free between its points, and what drives prescribe of it.
+/// Gap between a loop's points, less what it leaves free or drives prescribe.
 class LoopGap {
  public:
   LoopGap(const Scene& scene, const LoopSpec& loop) : loop_(loop) {
@@ -75,13 +75,13 @@ class LoopGap {
   }
 
  private:
-  /// Between the wheel and its plane.
+  /// Gap between the wheel and its plane.
   Vector3d of_wheel(const Vector3d& normal, const Isometry3d& child, const Vector3d& apart) const {
     const Vector3d axle = child.linear() * loop_.axis.normalized();
     const double circle = loop_.radius - loop_.crown_radius;
     return (normal.dot(apart) - loop_.crown_radius - circle * normal.cross(axle).norm()) * normal;
   }
-  /// F along its gradient in the plane; of a slot also what leads out of it. `axes`: columns e₁, e₂
+  /// F along its gradient in the plane; for a slot also the part out of it. `axes`: columns e₁, e₂
   /// and the normal.
   Vector3d of_pair(const Eigen::Matrix3d& axes, const Isometry3d& child, const Vector3d& apart) {
     const Vector3d in_axes = axes.transpose() * apart;

@@ -31,7 +31,7 @@ namespace momenta {
 
 class OwnMultipliers {
  public:
-  /// `sums`: impulses() will be asked for, and step() is to be called after every step.
+  /// `sums`: for impulses(), with step() called after every step.
   OwnMultipliers(Form& form, int m, bool sums)
       : form_(form), impulses_(form.momentum_like()), sums_(sums), m_(m), lambda_(m) {
     if (sums) total_ = first_ = Eigen::VectorXd::Zero(m);
@@ -39,11 +39,11 @@ class OwnMultipliers {
       points_[k] = 0.5 * (1 - std::cos(static_cast<double>(k) * std::numbers::pi / n));
   }
 
-  /// Whether it has to see every step.
+  /// Whether step() has to see every step.
   bool sums() const { return sums_; }
 
-  /// Looks at the step that was just taken, n + 1 readings of the state; of other forms than those
-  /// of momenta only for impulses(). `state`: room for one of the integrator's.
+  /// Reads the state at n + 1 points of the step just taken; without impulse multipliers only for
+  /// impulses(). `state`: work space for the integrator's.
   void step(double t0, double t1, const Interpolant& between, std::vector<double>& state) {
     if (!impulses_ && !sums_) return;
     if (sums_) settle();
@@ -59,7 +59,7 @@ class OwnMultipliers {
     lost_ |= !known_;
   }
 
-  /// λ at a time in that step (m), `multipliers` the form's there; empty: not known, as before the
+  /// λ at a time in that step (m), `multipliers`: the form's there; empty: unknown, as before the
   /// first step of a momentum form.
   const Eigen::VectorXd& at(double t, const Eigen::VectorXd& multipliers) {
     if (!impulses_) return lambda_ = multipliers;
@@ -77,7 +77,7 @@ class OwnMultipliers {
     return lambda_;
   }
 
-  /// ∫λ dt up to a time in the last step (m); empty: not known. Zero before the first step.
+  /// ∫λ dt up to a time in the last step (m); empty: unknown. Zero before the first step.
   /// @pre sums
   Eigen::VectorXd impulses(double t) const {
     if (lost_) return {};
@@ -112,8 +112,8 @@ class OwnMultipliers {
              sigma_[k];
     return sum;
   }
-  /// From the step's start to a fraction of it: the integral, by Gauss's four points, exact to
-  /// degree 7; and jumps of σ in a gauge that has them.
+  /// From the step's start to a fraction of it: ∫λ dt or ∫κσ dt by four Gauss points, exact to
+  /// degree 7, and changes of σ in a gauge with jumps.
   Eigen::VectorXd gained(double x) const {
     constexpr std::array<double, 4> at{0.069431844202973712, 0.33000947820757187,
                                        0.66999052179242813, 0.93056815579702629},
@@ -125,7 +125,7 @@ class OwnMultipliers {
     if (impulses_ && jumps()) sum += value(x) - sigma_[0];
     return sum;
   }
-  /// The last step into the total.
+  /// Adds the last step to the total.
   void settle() {
     if (known_) total_ += gained(1);
     known_ = false;

@@ -21,12 +21,11 @@ namespace {
 using Rows = std::vector<std::vector<double>>;
 
 constexpr double tight = 1e-22, loose = 1e-18;
-/// Prescribed motion and formulas of forces may be functions of t, and t is a double: nothing is to
-/// be had below its rounding.
+/// Tolerances if drives or formulas take t, a double whose rounding is the limit.
 constexpr double tight_in_time = 1e-14, loose_in_time = 1e-12;
-/// Of stiff motions: their estimates are far above their errors.
+/// Tolerances of stiff motions, whose estimates are far above their errors.
 constexpr double tight_implicit = 1e-17, loose_implicit = 1e-14;
-constexpr double shortest = 1e-9;  ///< step, of the interval
+constexpr double shortest = 1e-9;  ///< step, part of the interval
 
 [[noreturn]] void give_up(double t, const std::string& why) {
   char text[48];
@@ -39,7 +38,7 @@ constexpr double shortest = 1e-9;  ///< step, of the interval
 bool takes_time(const Mechanism& mechanism) {
   if (mechanism.plan().drives) return true;
   const Scene& scene = mechanism.scene();
-  if (scene.lagrangian) return false;  // whose plan says so
+  if (scene.lagrangian) return false;  // its plan says so
   const FormulaReader reader(scene);
   const auto takes_it = [](const Formula& formula) {
     return std::any_of(formula.signals.begin(), formula.signals.end(),
@@ -57,7 +56,7 @@ bool takes_time(const Mechanism& mechanism) {
   return takes;
 }
 
-/// Whether an explicit method at a tolerance of runs is held by its stability.
+/// Whether stability limits an explicit method at a usual tolerance.
 bool is_stiff(const Mechanism& mechanism, const Start& start, double end,
               const std::function<bool(double)>& going_on) {
   FormOptions options;
@@ -81,7 +80,7 @@ Eigen::VectorXd rounded(const Quad* x, Eigen::Index count) {
 }
 
 /// q, u, λ and the first `impulses` of ∫λ dt at t = 0, end / count, …: as long a step of `method`
-/// as converges, never across an output. `forces` (may be null) is told each of these states.
+/// as converges, never across an output. `forces` (may be null) takes each state.
 template <class Method>
 Rows solve(const Mechanism& mechanism, const Start& start, double end, int count, double tolerance,
            Method&& method, std::size_t impulses, OwnReferenceForces* forces,
@@ -147,7 +146,7 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
   for (const auto& c : mechanism.coordinate_columns()) columns.push_back(c.label());
   for (const auto& c : mechanism.rate_columns()) columns.push_back(c.label());
   for (const auto& c : mechanism.multiplier_columns()) columns.push_back(c.label());
-  // Of redundant rows λ need not be continuous.
+  // λ of redundant rows need not be continuous.
   const bool impulses =
       forces && mechanism.m() > 0 && rank_at(mechanism, start).rank == mechanism.m();
   if (impulses)

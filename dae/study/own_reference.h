@@ -18,14 +18,14 @@ namespace momenta {
 struct OwnReference {
   Reference reference;
   double accuracy = 0;    ///< largest distance of the two solutions, as errors are measured
-  bool implicit = false;  ///< by the implicit method, for the motion is stiff
+  bool implicit = false;  ///< stiff motion: made by the implicit method
 };
 
 /// Joint coordinates, rates and multipliers λ at `count` equal intervals up to `end` [s], bound to
 /// measured_columns(). With `forces` also ∫λ dt, integrated beside q and u, where the loop
 /// equations are independent at the start; and efforts, reactions, momenta and work
-/// (own_reference_forces.h). `going_on` (may be empty) is told the time reached; false ends it.
-/// @throws std::runtime_error with one sentence when there is no such solution.
+/// (own_reference_forces.h). `going_on` (may be empty) takes the time reached; false stops. @throws
+/// std::runtime_error with one sentence without a solution.
 OwnReference own_reference(const Mechanism& mechanism, const Start& start, double end, int count,
                            const std::function<bool(double t)>& going_on = {}, bool forces = false);
 

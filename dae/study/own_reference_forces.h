@@ -1,10 +1,10 @@
 #pragma once
-// What a reference has beside q, u and λ: efforts of drives and reactions of joints, by Newton's
+// Columns of a reference beside q, u and λ: efforts of drives and reactions of joints, by Newton's
 // and Euler's equations with the u̇ and λ of quadruple precision at the state rounded to doubles; p
 // = M u; and the work of drives and of what has no potential, as what T + V has grown by. A run
 // integrates the power of the same forces, so that its work and this one share no formula.
 //
-// What redundant loops leave open at any of the times is no column, nor are loads out of the plane
+// Values that redundant loops leave open at any time make no column, nor do loads out of the plane
 // of planar mechanisms, nor work where nothing can do any.
 
 #include <momenta/dae/study/force_columns.h>
@@ -18,10 +18,10 @@ class OwnReferenceForces {
  public:
   explicit OwnReferenceForces(const Mechanism& mechanism);
 
-  /// The next time's, u̇ (nv) and λ (m) of (3) there; what has no value is left out later on.
+  /// Adds the values at the next time; u̇ (nv), λ (m) of (3) there.
   void add(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
            const Eigen::VectorXd& udot, const Eigen::VectorXd& lambda);
-  /// Appends the columns, and to each row, in the order they were added, their values.
+  /// Appends the columns, and their values to each row, in order of add().
   void append(std::vector<std::string>& columns, std::vector<std::vector<double>>& rows) const;
 
  private:

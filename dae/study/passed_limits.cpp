@@ -87,7 +87,7 @@ void PassedLimits::values(double t, const double* q, std::vector<double>& x) {
   }
 }
 
-/// By how much; not positive within the limits, nor where rounding alone is beyond.
+/// Distance beyond the limits; not positive within them or within rounding.
 double PassedLimits::beyond(const Limited& l, double x) {
   constexpr double rounding = 1e-9;  // [rad or m], and of the limit
   const auto past = [](double far, double limit) { return far - rounding * (1 + std::abs(limit)); };
@@ -107,7 +107,7 @@ PassedLimit* PassedLimits::known(Limited& l, std::vector<PassedLimit>& passed) {
   return at == passed.end() ? nullptr : &*at;
 }
 
-/// What is known of the joint, or the note that it passes at t.
+/// Entry of `l`, made at t if there is none.
 PassedLimit& PassedLimits::entry(Limited& l, double t, double x, std::vector<PassedLimit>& passed) {
   if (PassedLimit* p = known(l, passed)) return *p;
   l.noted = passed.size();

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double same_place = 1e-9;  // [m] of two ends
+constexpr double same_place = 1e-9;  // between two ends [m]
 
 Picture::Turn turn_of(JointKind kind) {
   switch (kind) {

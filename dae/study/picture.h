@@ -34,13 +34,13 @@ struct Picture {
     bool translations = false;
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame
-    std::optional<std::array<double, 2>> limits;      ///< of its joint [rad or m]
-    /// Of its joint: a spring, a damper, a drive, a torque.
+    std::optional<std::array<double, 2>> limits;      ///< limits of the joint [rad or m]
+    /// Whether the joint has a spring, a damper, a drive, a torque.
     bool sprung = false, damped = false, driven = false, pushed = false;
     Shape shape;
     double mass = 0;
     Eigen::Vector3d com = Eigen::Vector3d::Zero();
-    /// Where joints, loops and springs hold it, and the ends of a rod; no two the same.
+    /// Points of joints, loops and springs, and ends of a rod; no two the same.
     std::vector<Eigen::Vector3d> ends;
   };
   /// Two points, in body axes; −1: ground.
@@ -49,18 +49,18 @@ struct Picture {
     int parent = -1, child = -1;
     Eigen::Vector3d at_parent = Eigen::Vector3d::Zero(), at_child = Eigen::Vector3d::Zero();
   };
-  /// A solid fixed in a body, or −1: in the ground.
+  /// A solid fixed in a body; −1: the ground.
   struct Solid {
     int body = -1;
     VisualSpec visual;
-    int mesh = -1;  ///< of a mesh: place among `meshes`; −1: not drawn
+    int mesh = -1;  ///< mesh: place among `meshes`; −1: not drawn
   };
   /// Triangles of a mesh, scaled: in axes of its solid [m].
   struct Triangles {
     std::vector<Eigen::Vector3d> points;
     std::vector<std::array<std::uint32_t, 3>> corners;  ///< counter-clockwise from outside
   };
-  /// A curve fixed in a body, or −1: in the ground: a slot, an outline of a cam, a rack.
+  /// A curve fixed in a body (−1: the ground): a slot, an outline of a cam, a rack.
   struct Stroke {
     int body = -1;
     std::vector<Eigen::Vector3d> points;  ///< in body axes [m]
@@ -109,7 +109,7 @@ struct Film {
 
 /// T and s of every body and g of every loop, at the times of a film.
 struct Motion {
-  int run = -1;  ///< of which run of a study; −1: the start, before any
+  int run = -1;  ///< run of a study; −1: the start, before any
   struct Frame {
     std::vector<Eigen::Quaterniond> turn;  ///< unit; of `about_axis` with its vector along the axis
     std::vector<Eigen::Vector3d> translation;  ///< [m]

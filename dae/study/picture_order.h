@@ -9,7 +9,7 @@
 
 namespace momenta {
 
-/// The joints of a scene, parents first, and which place a body has in that order.
+/// Joints, parents first, and the place of each body in that order.
 struct PictureOrder {
   std::vector<const JointSpec*> joints;
   std::map<std::string, int> place{{"ground", -1}};

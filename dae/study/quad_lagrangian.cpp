@@ -7,11 +7,11 @@
 namespace momenta {
 namespace {
 
-/// From 1e-16, where starts are, to below 1e-32.
+/// Newton steps from the 1e-16 of starts to below 1e-32.
 constexpr int newton_steps = 2;
 
-/// A x = b by elimination with full pivoting. Where pivots vanish, of redundant constraints, the
-/// unknowns left are zero.
+/// A x = b by elimination with full pivoting. Where pivots vanish, as with redundant constraints,
+/// the unknowns left are zero.
 class FullPivoting {
  public:
   explicit FullPivoting(std::size_t n) : n_(n), a_(n * n), b_(n), found_(n), row_(n), column_(n) {}
@@ -22,9 +22,9 @@ class FullPivoting {
 
   /// All unknowns of the last solution.
   const Quad* found() const { return found_.data(); }
-  /// The first `count` unknowns of x; false where it is not finite or they are not all determined.
+  /// The first `count` unknowns of x; false if not finite or not all determined.
   bool solve(std::size_t count, Quad* x) {
-    constexpr double vanishes = 1e-20;  // of the largest pivot
+    constexpr double vanishes = 1e-20;  // part of the largest pivot
     for (std::size_t i = 0; i < n_; ++i) row_[i] = column_[i] = i;
     double largest = 0;
     std::size_t rank = 0;
@@ -119,7 +119,7 @@ class QuadLagrangian final : public QuadMotion {
   }
 
  private:
-  /// M x + Φ_qᵀν = r, Φ_q x = −g where it is placed.
+  /// M x + Φ_qᵀν = r, Φ_q x = −g at the configuration placed.
   bool solve(Quad* x) {
     rows_.mass_values(mass_.data());
     rows_.constraint_values(constraint_.data());

@@ -14,7 +14,7 @@ namespace {
 
 /// Pivots this far below their scale are those of redundant rows.
 constexpr double fade = 1e-20;
-/// From 1e-16, where starts are, to below 1e-32.
+/// Newton steps from the 1e-16 of starts to below 1e-32.
 constexpr int newton_steps = 2;
 
 struct In {

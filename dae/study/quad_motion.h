@@ -22,10 +22,10 @@ class QuadMotion {
   virtual bool project(double t, Quad* y) = 0;
 };
 
-/// Of a Lagrangian: make_quad_lagrangian().
-/// @pre the mechanism stays where it is. @throws std::runtime_error where more loop equations are
-/// open at once than the sweeps have slots, or a joint is a user joint. Cost of a call: about 100
-/// evaluations in doubles.
+/// Makes the motion; a Lagrangian's by make_quad_lagrangian().
+/// @pre the mechanism outlives it, unmoved. @throws std::runtime_error where more loop equations
+/// are open at once than the sweeps have slots, or a joint is a user joint. Cost of a call: about
+/// 100 evaluations in doubles.
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -7,7 +7,7 @@
 
 namespace momenta {
 
-/// Of Φ_q at (t, q) of the start; singular values are not known. O(m² nv).
+/// Rank of Φ_q at (t, q) of the start, without singular values. O(m² nv).
 inline LoopRank rank_at(const Mechanism& mechanism, const Start& start) {
   const auto e = mechanism.evaluation<double>();
   e->place(start.t, start.q.data());

@@ -16,8 +16,8 @@ namespace momenta {
 
 class ReactionErrors {
  public:
-  /// `reference` is bound to measured_columns(). Joints that it has no column of are told only
-  /// where their reactions are not unique.
+  /// `reference` is bound to measured_columns(). Joints without a column are reported only if not
+  /// unique.
   ReactionErrors(const Mechanism& mechanism, const Reference& reference) : reference_(reference) {
     if (mechanism.scene().lagrangian) return;
     const std::vector<JointPlace> places = joint_places(mechanism);
@@ -27,7 +27,7 @@ class ReactionErrors {
     for (const JointPlace& joint : places) all_.push_back({joint.name, not_measured, 0});
   }
 
-  /// At the reference's time of index `at`; the row has reactions.
+  /// Takes the row, with reactions, at the reference's time of index `at`.
   void sample(std::size_t at, const TrajectoryRow& row) {
     const auto& open = row.not_unique();
     for (std::size_t j = 0; j < all_.size(); ++j) {
@@ -46,7 +46,7 @@ class ReactionErrors {
     }
   }
 
-  /// Of joints that have an error or are not unique.
+  /// Joints that have an error or are not unique.
   std::vector<RunResult::ReactionError> told() const {
     std::vector<RunResult::ReactionError> some;
     for (const RunResult::ReactionError& joint : all_)

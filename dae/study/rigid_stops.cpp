@@ -11,7 +11,7 @@
 namespace momenta {
 namespace {
 
-constexpr double shortest = 1e-8;  ///< flight, of the run
+constexpr double shortest = 1e-8;  ///< flight, part of the run
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -123,16 +123,16 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
                              " s, where a rigid stop is met, the state is not finite: the method's "
                              "steps there are too short for its dense output");
   const std::set<std::size_t> held_before = held_;
-  std::set<std::size_t> soft;  // taken with e = 0
+  std::set<std::size_t> soft;  // stops taken with e = 0
   for (const std::size_t i : hit)
     if (stops_[i].restitution == 0) soft.insert(i);
-  // What is met again at once has not left: its flight is below what the method resolves.
+  // A stop met again at once was not left: the flight is below what the method resolves.
   std::set<std::size_t> stuck;
   for (const std::size_t i : hit)
     if (const auto met = last_.find(i); met != last_.end() && t - met->second < shortest * span_)
       soft.insert(i), stuck.insert(i);
   for (const std::size_t i : hit) last_[i] = t;
-  std::set<std::size_t> left;  // held, and pushed off by the impact
+  std::set<std::size_t> left;  // held stops pushed off by the impact
   for (std::size_t trial = 0; trial <= 4 * stops_.size(); ++trial) {
     std::vector<StopAtImpact> at;
     for (const std::size_t i : hit)
@@ -143,7 +143,7 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
         at.push_back({stops_[i].u, stops_[i].side, 0, true, stuck.contains(i)});
     Eigen::VectorXd u = before;
     taken = hit.empty() ? 0 : impact_.jump(t, q, u, at);
-    // What an impact pushes off no longer holds.
+    // A stop pushed off by an impact ceases to hold.
     const double still = 1e-9 * (1 + u.cwiseAbs().maxCoeff());
     const auto is_off = [&](std::size_t i) {
       return !stuck.contains(i) && stops_[i].side * u[stops_[i].u] < -still;
@@ -167,11 +167,11 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
         continue;
       }
       again = true;
-      // With e = 0 already it holds, and what is left of its rate, on either side, is an error.
+      // A stop with e = 0 already holds; the rate left, on either side, is an error.
       if (!soft.insert(i).second) held_.insert(i), stuck.insert(i);
     }
-    // What is pushed off for less than a flight holds on: else two that push each other off never
-    // come to rest.
+    // A stop pushed off for less than a flight holds on: else two that push each other off never
+    // rest.
     for (const std::size_t i : left) {
       const Stop& stop = stops_[i];
       const double off = -stop.side * u[stop.u], pressed = stop.side * start.udot[stop.u];
@@ -193,7 +193,7 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
       if (!held_.contains(i)) tell(told, t, i, "released", 0, 0, 0);
     acting_ = held_.empty() ? &mechanism_ : &now;
     solving_ = &acting;
-    // Pulled off it, no next impact can be foreseen: some moments are enough for its first step.
+    // If pulled off, no next impact can be foreseen: a short pause covers the first step.
     pause_ = std::isfinite(pause) ? pause : hit.empty() ? 0 : 1e-6 * span_;
     met_ = {hit.begin(), hit.end()};
     for (std::size_t i = 0; i < stops_.size(); ++i)

@@ -33,27 +33,27 @@ class RigidStops {
   RigidStops(const Mechanism& mechanism, double span);
 
   bool any() const { return !stops_.empty(); }
-  /// Of both sides of each joint that has them.
+  /// Stops on both sides of each joint that has them.
   std::size_t size() const { return stops_.size(); }
   bool any_held() const { return !held_.empty(); }
-  /// What the run integrates now.
+  /// The mechanism of this phase.
   const Mechanism& acting() const { return *acting_; }
-  /// Time [s] after the last impact in which the next one cannot be.
+  /// Time after the last impact without a next one [s].
   double pause() const { return pause_; }
   /// Whether a stop was met at the last impact and is open.
   bool was_met(std::size_t i) const { return met_.contains(i) && !held_.contains(i); }
 
-  /// The start of the run: stops that are met there are taken as impacts. @throws SceneError for
-  /// a start beyond a stop, std::runtime_error as meet()
+  /// Start of the run: stops met there are taken as impacts. @throws SceneError for a start beyond
+  /// a stop, std::runtime_error as meet()
   Start begin(const Start& start, RunResult& told);
-  /// The start behind an impact at some stops, or behind the release of some, at (t, q, u⁻).
-  /// `taken`: the energy that the stops took [J]. @throws std::runtime_error, one sentence
+  /// Start behind an impact at some stops, or the release of some, at (t, q, u⁻). `taken`: energy
+  /// that the stops took [J]. @throws std::runtime_error, one sentence
   Start meet(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
              const std::vector<std::size_t>& which, RunResult& told, double& taken);
 
-  /// The number whose root ends the phase of stop i, at a state of it.
+  /// Value at a state whose root ends the phase of stop i.
   double value(std::size_t i, double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
-  /// Whether it ends where that number passes upwards.
+  /// Whether the phase ends where value() passes upwards.
   bool ends_upwards(std::size_t i) const { return !held_.contains(i); }
 
  private:
@@ -69,8 +69,8 @@ class RigidStops {
   };
   Start behind(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& before,
                const std::vector<std::size_t>& hit, RunResult& told, double& taken);
-  /// Whether rate `off` a stop against the acceleration `pressed` > 0 leaves it for longer than a
-  /// part of the run, and higher than rounding.
+  /// Whether the rate `off` a stop, against the acceleration `pressed` > 0, leads off it for more
+  /// than 10⁻⁸ of the run and beyond rounding.
   bool is_flight(std::size_t i, double off, double pressed) const;
   Acting& with(const std::set<std::size_t>& held);
   std::string loop_name(std::size_t i) const;
@@ -84,13 +84,13 @@ class RigidStops {
   std::vector<Stop> stops_;
   Impact impact_;
   std::set<std::size_t> held_;
-  std::map<std::set<std::size_t>, Acting> made_;  ///< by the stops that hold
+  std::map<std::set<std::size_t>, Acting> made_;  ///< by held stops
   const Mechanism* acting_;
   Acting* solving_ = nullptr;
   double pause_ = 0;
-  std::set<std::size_t> met_;  ///< at the last impact
-  std::vector<double> slack_;  ///< what closing drift moved each beyond its stop [rad or m]
-  std::map<std::size_t, double> last_;  ///< when each was met [s]
+  std::set<std::size_t> met_;           ///< stops met at the last impact
+  std::vector<double> slack_;           ///< way beyond each stop after closing drift [rad or m]
+  std::map<std::size_t, double> last_;  ///< time when each was last met [s]
   Eigen::VectorXd udot_, lambda_;
 };
 

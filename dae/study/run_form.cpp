@@ -19,8 +19,7 @@
 namespace momenta {
 namespace {
 
-/// Uniform samples and the reference's own times, ascending, without the start; none beyond what
-/// drives can reach.
+/// Uniform samples and the reference's times, ascending, without the start, as far as drives reach.
 std::vector<double> output_times(const RunSettings& s, const Reference* reference,
                                  const DriveReach& reach) {
   std::vector<double> times;
@@ -30,7 +29,7 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
       if (t > 0 && t <= s.end_time * (1 + 1e-12)) times.push_back(std::min(t, s.end_time));
   std::sort(times.begin(), times.end());
   const double apart = 1e-12 * s.end_time;
-  // Of two times that are one, keep the reference's: it comes with its own digits.
+  // Times apart by rounding are one.
   times.erase(
       std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < apart; }),
       times.end());
@@ -76,9 +75,8 @@ void judge_rank(const Mechanism& mechanism, const Start& start, RunResult& resul
   result.residue = residue_in_words(mechanism, start.residue);
 }
 
-/// A run that ends where drives cannot go on says so, whatever its method met there: where drives
-/// alone move the loops that is known before it starts; else it is looked for next to the last
-/// state with closed loops.
+/// Makes drives that cannot go on the reason of a run's end: known beforehand where drives alone
+/// move the loops, else looked for next to the last state with closed loops.
 void judge_drives(const Mechanism& mechanism, const DriveReach& reach,
                   const std::vector<double>& times, const RunMonitor::Closed& closed,
                   RunResult& result) {
@@ -121,7 +119,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   result.integrated = scene.in_words();
   RigidStops rigid(mechanism, result.settings.end_time - start.t);
   RigidStops* stops = rigid.any() ? &rigid : nullptr;
-  Start begun = scene.start();  // of the phase
+  Start begun = scene.start();  // start of the phase
   std::optional<FormRunner> made;
   try {
     if (stops) begun = stops->begin(begun, result);
@@ -210,7 +208,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
       run.reason = none.what();
       break;
     }
-    // No longer than what is left before the next impact: methods with memory begin at order 1.
+    // The first step is well below the pause: methods with memory begin at order 1.
     made->begin_with_step(0.1 * stops->pause());
     monitor.go_on(hit.t, made->form());
     std::vector<double> left;

@@ -124,7 +124,7 @@ bool RunMonitor::sample(double t, const double* y, const double* ydot) {
   return !request_.progress || request_.progress(t);
 }
 
-/// Of Φ less what the start leaves open.
+/// Drift of Φ less what the start leaves open.
 Drift RunMonitor::position_drift(double t, const Eigen::VectorXd& q) {
   e_->place(t, q.data());
   e_->positions(phi_.data());
@@ -145,7 +145,7 @@ RunMonitor::Measured RunMonitor::measure(double t, const Drift& position) {
   return now;
 }
 
-/// The series of charts.
+/// Appends to the series of charts.
 void RunMonitor::note(double t, const Measured& now) {
   Series& s = result_.series;
   if (s.t.empty()) {
@@ -197,7 +197,7 @@ std::vector<double> RunMonitor::kept_row() const {
 }
 
 void RunMonitor::keep_closed(double t, const Eigen::VectorXd& q) {
-  constexpr double closed = 1e-5;  // of the scene's length, or radians
+  constexpr double closed = 1e-5;  // lengths of the scene, or radians
   if (!mechanism_.plan().drives || apart_->gap(phi_) > closed) return;
   closed_.t = t;
   closed_.q = q;
@@ -222,7 +222,7 @@ void RunMonitor::carry(Memory& memory) {
 
 void RunMonitor::finish() {
   const Series& s = result_.series;
-  // Of what was measured: errors are, at the reference's times alone.
+  // NaN: not measured, as errors off the reference's times.
   const auto largest = [](const std::vector<double>& v) {
     double m = not_measured;
     for (double x : v)
@@ -233,7 +233,7 @@ void RunMonitor::finish() {
   result_.energy_error_max = largest(s.energy_error);
   if (!s.t.empty()) result_.energy_turned_over = departures_.turned_over();
   departures_.judge(result_);
-  if (singular_crossings_ && now_.q.size() > 0)  // none where a run that goes on has no time left
+  if (singular_crossings_ && now_.q.size() > 0)  // empty: a continued run had no time left
     result_.last_pose = apart_->in_units(now_.q);
   result_.multiplier_difference_max = largest(s.multiplier_difference);
   result_.reaction_errors = errors_.of_reactions();
@@ -247,11 +247,11 @@ void RunMonitor::finish() {
   const auto growth = [&](const std::vector<double>& drift, double rounding) {
     return fit_growth(s.t, drift, std::max(rounding_level, rounding));
   };
-  // What redundant equations leave open changes with the pose by about as much.
+  // The residue of redundant equations changes with the pose by about as much.
   const Drift left = drift_of(mechanism_, residue_);
   const double rounding = std::max(apart_->rounding(!lengths), 4 * left.named(mechanism_)),
                angles = std::max(apart_->rounding(true), 4 * left.angles);
-  constexpr double of_steps = 10;  // what a run adds to the rounding of one pose
+  constexpr double of_steps = 10;  // times the rounding of one pose
   result_.drift_rounding = std::max(rounding_level, of_steps * rounding);
   result_.angle_rounding = std::max(rounding_level, of_steps * angles);
   result_.position_growth = growth(s.position_drift, rounding);

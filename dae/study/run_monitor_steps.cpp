@@ -1,5 +1,5 @@
-// What the run monitor sees between the samples: drift and power inside steps, limits and singular
-// poses that are passed, events, frames of the film.
+// The run monitor between the samples: drift and power inside steps, limits and singular poses that
+// are passed, events, frames of the film.
 
 #include <momenta/dae/study/run_monitor.h>
 

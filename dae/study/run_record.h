@@ -12,10 +12,10 @@
 
 namespace momenta {
 
-/// What a run depends on beside the scene, as a key.
+/// Key of what a run depends on beside the scene.
 std::string key_of(const RunSettings& settings);
 
-/// Records of what is kept. Non-finite numbers are strings, since JSON has none.
+/// Records; non-finite numbers are strings, since JSON has none.
 nlohmann::json record_of(const RunResult& run);
 nlohmann::json record_of(const TimedRun& run);
 nlohmann::json record_of(const StressRun& run);
@@ -23,7 +23,7 @@ nlohmann::json record_of(const SweepCase& run);
 nlohmann::json record_of(const OwnReference& reference);
 nlohmann::json record_of(const Checkpoint& checkpoint);
 
-/// Reads a record back; false, and the value is not to be used, where it is none of that kind.
+/// Reads a record back; false, with the value unusable, for another kind.
 bool read_record(const nlohmann::json& record, RunResult& run);
 bool read_record(const nlohmann::json& record, TimedRun& run);
 bool read_record(const nlohmann::json& record, StressRun& run);
@@ -31,7 +31,7 @@ bool read_record(const nlohmann::json& record, SweepCase& run);
 bool read_record(const nlohmann::json& record, OwnReference& reference);
 bool read_record(const nlohmann::json& record, Checkpoint& checkpoint);
 
-/// What the journal holds under a key; nothing without a journal.
+/// Record in the journal under a key, if any.
 template <class T>
 std::optional<T> recall(Journal* journal, const std::string& key) {
   const nlohmann::json* record = journal ? journal->find(key) : nullptr;

@@ -9,7 +9,7 @@ namespace momenta {
 
 /// @throws std::invalid_argument "rtol is -1, expected a tolerance, not negative" unless it `holds`
 void expect(bool holds, const char* name, double found, const char* expected);
-/// Whether all numbers of the settings are what they may be. @throws std::invalid_argument
+/// Checks the numbers of the settings. @throws std::invalid_argument
 void expect_numbers(const RunSettings& s);
 
 }  // namespace momenta

@@ -33,8 +33,8 @@ class SampleErrors {
 
   /// Whether the row has to have reactions.
   bool takes_reactions() const { return reactions_.has_value(); }
-  /// p is compared, where the reference has all of it. `e` and, where there are loops, `solver`
-  /// (else null) are used as workspaces after each row is set.
+  /// Compares p, if the reference has all of it. `e` and, where there are loops, `solver` (else
+  /// null) are used as workspaces after each row is set.
   void measure_momenta(Evaluation<double>& e, LoopSolver* solver) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(mechanism_.nv()); ++i) {
       momenta_.push_back(reference_->column_at(extras_ + i));
@@ -42,27 +42,27 @@ class SampleErrors {
     }
     momentum_error_.emplace(mechanism_, e, solver);
   }
-  /// The form's own λ are measured too: of a run of the scene as written.
+  /// Measures the form's own λ too, in a run of the scene as written.
   void measure_own(Form& form) {
     own_.emplace(form, mechanism_.m(), reference_ && reference_->has(Reference::Kind::impulse));
   }
   bool measures_own() const { return own_.has_value(); }
   /// Whether step() has to see steps without samples too.
   bool sees_every_step() const { return own_ && own_->sums(); }
-  /// Looks at the step that was just taken. `state`: room for one of the integrator's.
+  /// Looks at the step just taken. `state`: work space for the integrator's.
   void step(double t0, double t1, const Interpolant& between, std::vector<double>& state) {
     own_->step(t0, t1, between, state);
   }
 
-  /// At a sample, whose row is set; of `state`, the form's multipliers (m) are its own. `work`:
-  /// that done so far [J].
+  /// Takes a sample, whose row is set; `state` has the form's own multipliers (m). `work`: done so
+  /// far [J].
   void sample(double t, const Snapshot& state, const TrajectoryRow& row, double work) {
     if (own_) compare_own(t, row, state.multipliers);
     if (reference_) compare(t, state, row, work);
   }
   /// Samples at times of the reference.
   int compared() const { return compared_; }
-  /// By joint, of a reference with reactions.
+  /// Errors by joint, if the reference has reactions.
   std::vector<RunResult::ReactionError> of_reactions() const {
     return reactions_ ? reactions_->told() : std::vector<RunResult::ReactionError>{};
   }
@@ -140,7 +140,7 @@ class SampleErrors {
     if (reference_->has(kind)) errors.back() = error;
   }
 
-  /// The row by measured_columns(), and which of them are not unique.
+  /// Sets the row by measured_columns(), and the places that are not unique.
   void take_measured(double t, const TrajectoryRow& row, double work) {
     std::fill(measured_.begin(), measured_.end(), not_measured);
     std::copy(row.numbers().begin(), row.numbers().end(), measured_.begin());

@@ -11,8 +11,8 @@
 namespace momenta {
 namespace {
 
-/// Output times are computed, those of a file are read: apart by rounding at the most.
-constexpr double same_time = 1e-9;  ///< of the last time
+/// Computed output times and those read from a file differ by rounding at most.
+constexpr double same_time = 1e-9;  ///< part of the last time
 
 bool is_force(const std::string& column) {
   return column.ends_with("[N]") || column.ends_with("[N m]");

@@ -28,14 +28,14 @@
 namespace momenta {
 
 struct SceneProblem {
-  std::string scene, name;    ///< the file as it is to be opened; empty name: the scene's
-  std::vector<Setting> set;   ///< other numbers in it
-  std::string reference;      ///< CSV, as it is to be opened; empty: made in quadruple precision
-  std::optional<double> end;  ///< [s]; without: of the reference, or of the scene
-  int samples = 100;          ///< output intervals, where no file of a reference has its own
-  std::vector<std::string> columns;  ///< judged; empty: all of the reference but forces
+  std::string scene, name;           ///< path to open; empty name: the scene's
+  std::vector<Setting> set;          ///< other numbers for the scene
+  std::string reference;             ///< CSV to open; empty: made in quadruple precision
+  std::optional<double> end;         ///< [s]; none: the reference's, or the scene's
+  int samples = 100;                 ///< output intervals, where no file of a reference has its own
+  std::vector<std::string> columns;  ///< judged ones; empty: all of the reference but forces
   BenchmarkError::Kind error = BenchmarkError::Kind::mixed;
-  double threshold = 1e-3;      ///< of Kind::threshold
+  double threshold = 1e-3;      ///< for Kind::threshold
   std::vector<double> allowed;  ///< errors that the source accepts, falling
   std::vector<std::string> forms, integrators;
   std::vector<double> tolerances;  ///< rtol = atol
@@ -45,7 +45,7 @@ struct SceneSuite {
   std::vector<SceneProblem> problems;
 };
 
-/// Whether the problems of a suite are scenes; false too for what is no suite.
+/// Whether the problems of a suite are scenes; false for no suite.
 bool has_scenes(const std::filesystem::path& suite);
 
 /// @throws SceneError
@@ -63,7 +63,7 @@ struct SceneProblemResult {
   std::string reference;             ///< the file, or how it was made
   std::vector<std::string> columns;  ///< judged
   std::vector<RunResult> runs;
-  std::vector<double> errors;  ///< of each run; NaN: it did not come to its end
+  std::vector<double> errors;  ///< by run; NaN: not done
 };
 struct SceneSuiteResult {
   std::string name;
@@ -73,21 +73,21 @@ struct SceneSuiteResult {
 
 struct SceneSuiteRequest {
   Timing timing = Timing::rounds;
-  bool own_references = false;  ///< made anew also where a problem has a file
-  double max_cpu_seconds = 60;  ///< of a run
-  /// Before and during each run (number of the problem, of how many, label); false ends the suite.
+  bool own_references = false;  ///< made even if a problem has a file
+  double max_cpu_seconds = 60;  ///< per run
+  /// Called before and during each run (problem, of how many, label); false ends the suite.
   std::function<bool(int, int, const std::string&)> progress;
 };
 
-/// The error of a run with a trajectory against a reference whose times are its output times; NaN
-/// for a run that is not done. @throws SceneError for times that are not the run's
+/// Error of a run with a trajectory against a reference at the same times; NaN unless done. @throws
+/// SceneError for other times
 double error_of(const RunResult& run, const Reference& reference,
                 const std::vector<std::string>& columns, BenchmarkError error);
 
-/// What cannot be run is told in its row; nothing of one problem keeps the others from running.
+/// A problem that fails says so in its `why`; the others run.
 SceneSuiteResult run_suite(const SceneSuite& suite, const SceneSuiteRequest& request);
 
-/// Which run meets an error with the fewest evaluations; none: errors.size().
+/// Run that meets an error with the fewest evaluations; none: errors.size().
 std::size_t cheapest_within(const SceneProblemResult& problem, double allowed);
 
 }  // namespace momenta

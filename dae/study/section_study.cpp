@@ -9,7 +9,7 @@
 namespace momenta {
 namespace {
 
-/// Where a coordinate or a rate stands in q or u.
+/// Place of a coordinate in q, or of a rate in u.
 struct Place {
   bool rate = false;
   Eigen::Index at = 0;
@@ -48,7 +48,7 @@ class Starts {
     e_->move(s.u.data());
     return e_->kinetic() + e_->potential(s.q.data());
   }
-  /// With the value in its place; why there is none in `left_out`.
+  /// Start with the value; `left_out`: why there is none.
   Start with(double value, std::string& left_out) const {
     Eigen::VectorXd q = own_.q, u = own_.u;
     (varied_.rate ? u : q)[varied_.at] = value;

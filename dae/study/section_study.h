@@ -17,22 +17,22 @@
 
 namespace momenta {
 
-/// What is run: settings, the start values, and whom to ask.
+/// Settings and start values of the runs.
 struct SectionRequest {
-  RunSettings settings;  ///< form, integrator, tolerances, end; samples are not looked at
-  std::string varied;    ///< "O.q" or "O.u": whose start value; empty: the scene's start alone
-  std::vector<double> values;  ///< of it [its unit]
+  RunSettings settings;        ///< form, integrator, tolerances, end; samples are not looked at
+  std::string varied;          ///< varied start value, "O.q" or "O.u"; empty: none
+  std::vector<double> values;  ///< values of `varied` [its unit]
   std::string led;             ///< a rate, "A.u", that keeps the energy; empty: none
-  double max_cpu_seconds = 0;  ///< of each run; 0: none
+  double max_cpu_seconds = 0;  ///< per run; 0: none
   /// Called at samples with the number of the start; return false to stop. May be empty.
   std::function<bool(std::size_t start)> progress;
 };
 
 /// The points of one start.
 struct SectionOrbit {
-  double value = not_measured;   ///< of what is varied
+  double value = not_measured;   ///< value of `varied`
   double energy = not_measured;  ///< at the start [J]
-  std::string left_out;          ///< one sentence where the start has not the energy; else empty
+  std::string left_out;          ///< one sentence if no start has the energy
   RunResult run;                 ///< its events are the points
 };
 

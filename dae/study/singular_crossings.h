@@ -43,7 +43,7 @@ class SingularCrossings {
         rates_(rate_units(mechanism)),
         length_(length_of(mechanism.scene())) {}
 
-  /// Of the step just taken; `state`: work space of the form's size.
+  /// Looks at the step just taken; `state`: work space of the form's size.
   void step(double t0, double t1, const Interpolant& between, std::vector<double>& state) {
     const double end = pivot_at(t1, between, state);
     const bool handled =
@@ -56,14 +56,14 @@ class SingularCrossings {
     before_ = end;
   }
 
-  /// Between two steps; beside what is in the result.
+  /// Saves or restores, between steps, what is not in the result.
   void carry(Memory& memory) {
     memory(always_faded_), memory(largest_), memory(passing_);
     memory(before_), memory(fastest_);
     memory(has_way_), memory(way_.data(), static_cast<std::size_t>(way_.size()));
   }
 
-  /// After the last step.
+  /// Drops crossings of loops that are weak throughout.
   void finish() {
     std::erase_if(result_.singular_crossings, [&](const RunResult::SingularCrossing& crossing) {
       return !(crossing.pivot < near_singular * largest_);
@@ -74,7 +74,7 @@ class SingularCrossings {
   static constexpr double near_singular = 1e-2;
   static constexpr std::size_t eighths = 8;
 
-  /// The step's pivots at its eighths; not a number: not looked at, or not measured.
+  /// Pivots at the eighths of a step; NaN: not measured.
   struct Looks {
     double t0, eighth;
     std::array<double, eighths + 1> pivot;
@@ -116,7 +116,7 @@ class SingularCrossings {
     const double speed = std::abs(std::sqrt(w2) - std::sqrt(w1)) / apart;
     if (speed > fastest_ && std::isfinite(speed)) fastest_ = speed;
   }
-  /// Whether what a pivot is between two looks is of no interest. False where one is not measured.
+  /// Whether the pivot between two looks is of no interest. False: a look was not measured.
   bool keeps_clear(const Looks& looks, std::size_t first, std::size_t last) const {
     const double moved = 2 * fastest_ * static_cast<double>(last - first) * looks.eighth;
     const double least =
@@ -169,8 +169,7 @@ class SingularCrossings {
       return gap > rounding_level ? pivot / gap : std::numeric_limits<double>::infinity();
     };
     between(t, state.data());
-    // Corrections bring q nearer to the constraints: where it is near enough before, they are
-    // spared.
+    // Corrections bring q nearer to the constraints: they are spared if it is near enough.
     if (!form_.read_coordinates(t, state.data(), q_)) return false;
     if (!has_way_ && !(over_gap(q_) < near)) return false;
     if (!form_.read(t, state.data(), nullptr, here_)) return false;
@@ -182,7 +181,7 @@ class SingularCrossings {
     return turned;
   }
 
-  /// By more than half a radian from the line of way_, angles and lengths of the scene alike.
+  /// Whether u turns more than half a radian off way_, angles and lengths of the scene alike.
   bool turns(const Eigen::VectorXd& u) const {
     const auto before = way_.cwiseQuotient(rates_), now = u.cwiseQuotient(rates_);
     return std::abs(before.dot(now)) < std::cos(0.5) * before.norm() * now.norm();
@@ -195,13 +194,13 @@ class SingularCrossings {
   Eigen::VectorXd phi_, q_, at_rest_, unused_;
   Snapshot here_;
   Eigen::VectorXd way_;    ///< u where this crossing came near another motion
-  Eigen::VectorXd rates_;  ///< a radian, or the length of the scene
-  double length_;          ///< of the scene [m]
+  Eigen::VectorXd rates_;  ///< units: a radian, or the length of the scene
+  double length_;          ///< length of the scene [m]
   bool has_way_ = false;
   int always_faded_ = std::numeric_limits<int>::max();
-  double largest_ = 0;            ///< pivot on the run
+  double largest_ = 0;            ///< largest pivot of the run
   double before_ = not_measured;  ///< pivot at the end of the step before
-  double fastest_ = 0;            ///< |Δ√w|/Δt on the run [1/s]
+  double fastest_ = 0;            ///< largest |Δ√w|/Δt of the run [1/s]
   bool passing_ = false;
 };
 

@@ -5,8 +5,8 @@
 
 namespace momenta {
 
-/// Start at t, q, u of the last row of the run with these settings, with the loops closed.
-/// @throws SceneError where the run does not get there (why), or where no pose closes the loops
+/// Start at t, q, u of the run's last row, with the loops closed. @throws SceneError where the run
+/// does not get there (why), or no pose closes the loops
 Start state_after(const Mechanism& mechanism, const Start& start, const RunSettings& settings,
                   double max_cpu_seconds);
 

@@ -16,8 +16,8 @@
 namespace momenta {
 namespace {
 
-constexpr double closed = 1e-8;      // |Φ|, |Φ̇| of a point that is given
-constexpr double norm_slack = 1e-6;  // of quaternions
+constexpr double closed = 1e-8;      // |Φ|, |Φ̇| of a given point
+constexpr double norm_slack = 1e-6;  // for quaternions
 constexpr std::array<std::string_view, 5> state_keys = {"t", "q", "v", "p", "tau"};
 constexpr std::array<std::string_view, 2> start_keys = {"q", "v"};
 
@@ -158,8 +158,8 @@ JointSpec* joint_named(Scene& scene, const std::string& name) {
   return joint == scene.joints.end() ? nullptr : &*joint;
 }
 
-/// Of a coupler Σ r_i q_i = c the one joint that was given no value, where the others were: so
-/// rotors turn with their joints.
+/// Sets the one joint of a coupler Σ r_i q_i = c that was given no value: so rotors turn with their
+/// joints.
 void follow_coupler(Scene& scene, const LoopSpec& coupler, std::set<std::string>& given,
                     JointValues values, double sum) {
   if (has_powers(coupler)) return;

@@ -10,8 +10,8 @@
 
 namespace momenta {
 
-/// What is left out is the scene's start: where loops close, the start that assembly finds, which
-/// is looked for only if something of it is needed.
+/// Missing values are the scene's start: with loops the start that assembly finds, which is sought
+/// only if needed.
 /// @throws SceneError: one sentence with the source, the key or joint, what was found and expected
 GivenState read_state(const std::string& state, const Mechanism& mechanism);
 
@@ -20,7 +20,7 @@ GivenState read_state(const std::string& state, const Mechanism& mechanism);
 Start start_of(const std::string& state, const Mechanism& mechanism);
 
 /// Other start values or first guesses for a scene, {"q": {"O": [..], …}, "v": {…}} by joint name,
-/// from a file or written out; joints that are left out keep theirs.
+/// from a file or written out; other joints keep theirs.
 /// @throws SceneError as read_state(), and where the scene does not take them
 void start_at(const std::string& state, Scene& scene);
 

@@ -54,7 +54,7 @@ Source source_of(const std::string& state) {
   return {name, all_of(in, name)};
 }
 
-/// "found 2 numbers", in the words of a reader.
+/// "an array of 2", "the number 1.5".
 std::string found(const Json& value) {
   if (value.is_array()) return "an array of " + std::to_string(value.size());
   if (value.is_object()) return "an object";

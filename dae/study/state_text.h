@@ -19,12 +19,12 @@ class StateText {
 
   const Json& json() const { return json_; }
   double number(const Json& value, const std::string& where, const std::string& what) const;
-  /// The table of a key: null where it is not there.
+  /// Table of a key; null: none.
   const Json* table(const std::string& key) const;
-  /// `size` numbers at `into`: an array, or one number where there is one.
+  /// Reads `size` numbers into `into`, from an array or a single number.
   void numbers(const Json& value, const std::string& where, std::size_t size, double* into) const;
   [[noreturn]] void fail(const std::string& sentence) const;
-  /// Says that a joint, or a coordinate of formulas, is not in the scene; `names`: those that are.
+  /// Refuses a joint, or coordinate of formulas, not in the scene; `names`: those in it.
   [[noreturn]] void unknown_joint(const std::string& name, const std::string& key,
                                   std::span<const std::string_view> names,
                                   const std::string& word = "joint") const;

@@ -47,7 +47,7 @@ class StateEvaluator {
     s_.reactions = reactions(mechanism_, given_.t, given_.q, s_.v, m > 0 ? s_.constrained : s_.free,
                              s_.lambda);
     if (s_.not_there.empty() && !all_finite()) refuse();
-    // What transmits nothing moves without forces: reactions are there all the same.
+    // Unheld motions take no forces: reactions exist without their u̇.
     blank(m > 0 ? unheld_free_ : unheld_, s_.free);
     blank(unheld_, s_.constrained);
     if (nv + m <= dense_state_limit) dense_parts();
@@ -69,8 +69,8 @@ class StateEvaluator {
            std::isfinite(s_.hamiltonian);
   }
 
-  /// Notes why (45), (7) or (3) has no solution, if joints without inertia are why; else loops hold
-  /// those that a solver stopped at. `rate`: where it was met.
+  /// Notes joints without inertia that leave (45), (7) or (3) without a solution; if there are
+  /// none, loops hold the joint that a solver stopped at, `rate`.
   void leave_out(int rate) {
     unheld_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), true, rate);
     if (!unheld_.joints.empty())
@@ -82,7 +82,7 @@ class StateEvaluator {
       refuse();
   }
 
-  /// Whether solvers take for inertia what rounding leaves of none.
+  /// Whether solvers take rounding for inertia.
   bool only_rounding_holds() {
     const UnheldJoints unheld = unheld_by_rounding(mechanism_, *e_, given_.t, given_.q.data());
     if (unheld.joints.empty()) return false;
@@ -90,7 +90,7 @@ class StateEvaluator {
     return true;
   }
 
-  /// v, p, σ, and the evaluation placed and moved there.
+  /// Finds v, p, σ; places and moves the evaluation there.
   void rates_and_momenta() {
     const double* q = given_.q.data();
     e_->place(given_.t, q);
@@ -134,7 +134,7 @@ class StateEvaluator {
     s_.sigma.setConstant(not_a_number);
   }
 
-  /// What needs poses and velocities alone, and ṗ.
+  /// Values of poses and velocities alone, and ṗ.
   void forces() {
     const double *q = given_.q.data(), *v = s_.v.data();
     const bool loops = mechanism_.m() > 0;
@@ -144,7 +144,7 @@ class StateEvaluator {
     }
     s_.kinetic = e_->kinetic();
     s_.potential = e_->potential(q);
-    // Of a Lagrangian p·v - L is Jacobi's T + V, whatever is linear in the rates.
+    // A Lagrangian's p·v - L is Jacobi's T + V, whatever is linear in the rates.
     s_.hamiltonian =
         (mechanism_.scene().lagrangian ? s_.kinetic : s_.p.dot(s_.v) - s_.kinetic) + s_.potential;
     s_.markers.resize(6 * mechanism_.scene().markers.size());
@@ -176,7 +176,7 @@ class StateEvaluator {
     beside(unheld_, r, g, s_.constrained, s_.lambda);
   }
 
-  /// x and λ where joints without inertia leave motions free; NaN where there are none.
+  /// x and λ where joints without inertia leave motions free; NaN without a solution.
   void beside(const UnheldJoints& unheld, const VectorXd& r, const VectorXd& g, VectorXd& x,
               VectorXd& lambda) {
     e_->place(given_.t, given_.q.data());
@@ -185,7 +185,7 @@ class StateEvaluator {
     lambda.setConstant(g.size(), not_a_number);
   }
 
-  /// Without loops by the recursion; M⁻¹τ is what τ as a momentum gives beyond zero momentum.
+  /// u̇ without loops, by the recursion; M⁻¹τ: rates of the momentum τ less those of zero momentum.
   void free_acceleration() {
     if (mechanism_.nv() == 0) return;
     if (mechanism_.m() > 0) return free_of_loops();
@@ -250,7 +250,7 @@ class StateEvaluator {
   const GivenState& given_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<Kkt> kkt_;
-  bool solvable_ = true;               ///< (7) and (3), by kkt_
+  bool solvable_ = true;               ///< whether kkt_ solves (7) and (3)
   UnheldJoints unheld_, unheld_free_;  ///< with the loops, and without them
   StateValues s_;
 };

@@ -28,12 +28,12 @@ namespace momenta {
 struct GivenState {
   double t = 0;       ///< [s]
   Eigen::VectorXd q;  ///< nq, quaternions of unit length
-  Eigen::VectorXd v;  ///< nv: rates; where `of_momenta` is true, where p starts from: p = M v
+  Eigen::VectorXd v;  ///< nv: rates; with `of_momenta` for missing entries of p, M v
   bool of_momenta = false;
-  Eigen::VectorXd p;          ///< nv, entries with `p_given` count, the others are those of M v
+  Eigen::VectorXd p;          ///< nv, entries with `p_given` count, the others are M v
   std::vector<bool> p_given;  ///< nv, when of_momenta
   Eigen::VectorXd tau;        ///< nv
-  std::string residue;        ///< of the start that q is of (residue_in_words), or empty
+  std::string residue;        ///< residue of the start (residue_in_words), or empty
 };
 
 struct StateValues {
@@ -45,12 +45,12 @@ struct StateValues {
   Centroidal centroidal;
   Reactions reactions;
   std::vector<double> markers;  ///< per marker x y z and velocity
-  /// One sentence where something is not there: which joints have no inertia, what that takes away.
+  /// One sentence on missing values: joints without inertia, and what that takes away.
   std::string not_there;
 
-  bool dense = false;  ///< the rest is there: nv + m within `dense_state_limit`
+  bool dense = false;  ///< `mass`, `loops` are set: nv + m ≤ dense_state_limit
   Eigen::MatrixXd mass;
-  LoopRank loops;  ///< of Φ_q
+  LoopRank loops;  ///< rank of Φ_q
 };
 
 inline constexpr int dense_state_limit = 300;  ///< unknowns, nv + m

@@ -35,7 +35,7 @@ std::string power_of_ten(double x) {
              : digits(x);
 }
 
-/// A rung made ready: what all contestants share.
+/// A rung made ready, for all contestants.
 struct Ground {
   std::unique_ptr<Mechanism> mechanism;
   std::unique_ptr<Start> start;
@@ -76,7 +76,7 @@ Ground prepare(const Rung& rung, const std::string& name, const StressRequest& r
     }
     if (request.journal && going_on()) request.journal->add(key, record_of(*own));
   }
-  // A motion that two tolerances in quadruple precision do not agree on is no judge.
+  // A reference whose two tolerances disagree is not used.
   if (own->accuracy < 1e-3 * request.bound) {
     own->reference.bind(trajectory_columns(*g.mechanism));
     g.accuracy = own->accuracy;
@@ -85,8 +85,8 @@ Ground prepare(const Rung& rung, const std::string& name, const StressRequest& r
   return g;
 }
 
-/// Each contestant as the theory of its form recommends: a one-step method resets the gauge and
-/// corrects positions, a multistep one leaks, or shifts what it remembers.
+/// Settings as the theory of a form recommends: a one-step method resets the gauge and corrects
+/// positions, a multistep one leaks, or shifts what it remembers.
 RunSettings settings_of(const Contestant& c, const Mechanism& mechanism, double rtol) {
   const RunDefaults& defaults = mechanism.scene().run;
   const bool dae = is_dae_form(c.form), loops = mechanism.m() > 0;
@@ -106,7 +106,7 @@ RunSettings settings_of(const Contestant& c, const Mechanism& mechanism, double 
   return s;
 }
 
-/// Where a series first passes a limit [s].
+/// Time at which a series first passes a limit [s].
 double first_beyond(const Series& s, const std::vector<double>& values, double limit) {
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::abs(values[i]) > limit) return s.t[i];
@@ -134,7 +134,7 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
               std::to_string(run.counters.steps) + " steps";
     return;
   }
-  // What was wrong before it stopped is the cause, not the stop.
+  // An error before the stop is the cause.
   struct Measure {
     const std::vector<double>& values;
     double scale;
@@ -160,7 +160,7 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
   }
   for (const RunResult::SingularCrossing& crossing : run.singular_crossings)
     if (r.verdict == Verdict::wrong && crossing.ambiguous && crossing.t <= r.at) {
-      r.verdict = Verdict::stopped;  // as far as it vouches for itself
+      r.verdict = Verdict::stopped;  // the run reported the crossing
       r.at = crossing.t;
       r.cause = ambiguous_from(crossing.t);
     }

@@ -1,7 +1,7 @@
 #pragma once
-// The stress study: which form survives which scenes. A ladder is a series of scenes of increasing
-// difficulty; each form with its integrator is run up each ladder until it fails, and the kind of
-// failure is recorded.
+// The stress study: which form survives which scenes. A ladder is a series of ever harder scenes;
+// each form with its integrator is run up each ladder until it fails, and the kind of failure is
+// recorded.
 //
 // A run has survived when it reached its end within the time limit and
 //
@@ -48,12 +48,12 @@ struct StressRun {
   Contestant contestant;
   int rung = 0;
   Verdict verdict = Verdict::untried;
-  std::string cause;         ///< one sentence where it did not survive
-  double at = not_measured;  ///< when it went wrong or stopped [s]
+  std::string cause;         ///< one sentence unless survived
+  double at = not_measured;  ///< time of the failure [s]
   double position_drift = not_measured, energy = not_measured, error = not_measured;
   double velocity_drift =
       not_measured;  ///< max |Φ̇| / √(2 T / m), largest kinetic energy T, whole mass m
-  /// Of rows in rad beside others in m [rad]; times length / √(2 T / m).
+  /// Drift of rows in rad beside rows in m [rad]; of their rates times length / √(2 T / m).
   double angle_drift = not_measured, angle_rate_drift = not_measured;
   RunResult run;  ///< without series
 };
@@ -62,7 +62,7 @@ struct LadderResult {
   std::string name;
   bool rising = true;
   std::vector<std::string> rungs;            ///< labels
-  std::vector<double> end_time;              ///< of each rung [s]
+  std::vector<double> end_time;              ///< by rung [s]
   std::vector<std::string> refused;          ///< why a rung has no consistent start, or empty
   std::vector<double> reference;             ///< accuracy of each rung's reference; NaN without one
   std::vector<std::vector<StressRun>> runs;  ///< [contestant][rung tried]
@@ -82,16 +82,16 @@ struct StressRequest {
   std::vector<Contestant> contestants;
   double rtol = 1e-8;  ///< = atol
   double bound = 1e-3;
-  double cpu_limit = 10;            ///< of one run [s]
-  double reference_cpu_limit = 10;  ///< of one rung's reference in quadruple precision [s]; 0: none
+  double cpu_limit = 10;            ///< per run [s]
+  double reference_cpu_limit = 10;  ///< per reference in quadruple precision [s]; 0: none
   int threads = 1;
-  Journal* journal = nullptr;  ///< finished runs are taken from it, and new ones recorded
+  Journal* journal = nullptr;  ///< journal of finished runs, or null
   /// Called before each run; false ends the study. Calls do not overlap.
   std::function<bool(int done, int total, const std::string& what)> progress;
 };
 
-/// Climbs all ladders. Results do not depend on
-/// `threads`, but for what is too slow. @throws std::invalid_argument for unknown names
+/// Climbs all ladders. `threads` changes no result but what is too slow. @throws
+/// std::invalid_argument for unknown names
 StressResult run_stress_study(const StressRequest& request);
 
 }  // namespace momenta

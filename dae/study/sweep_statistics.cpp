@@ -6,7 +6,7 @@
 namespace momenta {
 namespace {
 
-/// Statistics are of A and B together: the rows of A_B^(i) are these once more in other company.
+/// Statistics take the rows of A and B; those of A_B^(i) repeat their values.
 bool of_statistics(const SweepRequest& request, std::size_t number) {
   return !request.sample || !request.sample->settings().indices ||
          number % request.sample->cases_of_a_point() < 2;

@@ -1,10 +1,10 @@
 #pragma once
-// What the cases of a sweep say together: of each quantity mean, deviation and quantiles, and, of a
-// sample made for them, Sobol' indices; of each watched column the same statistics at each time.
+// Statistics of a sweep's cases: of each quantity mean, deviation, quantiles and, with a sample
+// made for them, Sobol' indices; of each watched column the same statistics at each time.
 //
-// Cases that are not done are no part of it: a quantity has as many values as cases are done and
-// measured it. Times are those of the first case that is done; a case with others (its end time is
-// varied, say) has no part in the curves.
+// Cases that are not done are left out: a quantity has as many values as done cases measured it.
+// Times are those of the first case that is done; cases with others (a varied end time, say) are
+// not in the curves.
 
 #include <momenta/dae/sample/sensitivity.h>
 #include <momenta/dae/sample/statistics.h>
@@ -21,8 +21,8 @@ struct SweepMeasure {
 const std::vector<SweepMeasure>& sweep_measures();
 
 struct SweepQuantity {
-  std::string name;            ///< of its column in sweep.csv, without the unit: "B.y last"
-  std::vector<double> values;  ///< one a case; NaN where it is not done or nothing was measured
+  std::string name;            ///< column of sweep.csv without its unit: "B.y last"
+  std::vector<double> values;  ///< by case; NaN: not done or not measured
 };
 /// Measures that any case has, then last, least and greatest of each watched column.
 std::vector<SweepQuantity> sweep_quantities(const SweepRequest&, const std::vector<SweepCase>&);
@@ -37,16 +37,16 @@ struct QuantityStatistics {
 struct SweepCurve {
   std::string name, label;  ///< as asked for, and with its unit
   std::vector<double> times;
-  std::vector<Summary> at;  ///< one a time
+  std::vector<Summary> at;  ///< by time
   std::size_t others = 0;   ///< cases that are done, at other times
 };
 
 struct SweepStatistics {
   std::vector<QuantityStatistics> quantities;
-  std::vector<SweepCurve> curves;  ///< of a sample
+  std::vector<SweepCurve> curves;  ///< with a sample only
 };
 
-/// Cost: a sort of each quantity, and of each curve at each time; 500 resamples of the indices.
+/// Cost: a sort of each quantity and each curve at each time; 500 resamples of the indices.
 SweepStatistics sweep_statistics(const SweepRequest&, const std::vector<SweepCase>&);
 
 }  // namespace momenta

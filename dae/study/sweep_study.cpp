@@ -26,7 +26,7 @@ std::vector<std::string> parts(const std::string& text, char between) {
   return all;
 }
 
-/// Places with commas between; of "\\," the comma belongs to the place.
+/// Places with commas between; in "\\," the comma belongs to the place.
 std::vector<std::string> places_in(const std::string& text) {
   std::vector<std::string> all(1);
   for (std::size_t i = 0; i < text.size(); ++i)

@@ -1,6 +1,6 @@
 #pragma once
-// The sweep study: some numbers of a scene are varied, with one run for each combination of values,
-// or one for each point of a sample of their distributions.
+// The sweep study: numbers of a scene are varied, with a run for each combination of values, or for
+// each point of a sample of their distributions.
 //
 // Cases are numbered from 0; of combinations the last varied number changes fastest. A case depends
 // on its number alone, so threads, processes and continued studies give the same results.
@@ -16,12 +16,12 @@
 
 namespace momenta {
 
-/// One number of the scene, or several that move together, and the values it takes.
+/// One number of the scene, or several together, and the values.
 struct Varied {
   std::string place;                ///< as written: with commas between several
   std::vector<std::string> places;  ///< as in Setting: all of them have the value
   Distribution distribution;
-  /// Of a choice, each of them once in combinations; empty of what can be sampled alone.
+  /// Values of a choice, each once in combinations; empty for other distributions.
   const std::vector<double>& values() const { return distribution.values; }
 
   /// "PLACE=FROM:TO:COUNT", evenly spaced; "PLACE=FROM:TO:COUNT:log", evenly in the logarithm;
@@ -35,45 +35,43 @@ struct SweepRequest {
   std::string text, file;  ///< the scene, and what messages call it
   MechanismOptions mechanism;
   std::vector<Varied> varied;
-  std::shared_ptr<const Sample>
-      sample;                  ///< of as many quantities as are varied; null: combinations
-  std::vector<Setting> fixed;  ///< numbers of the scene that are the same in all cases
-  /// The run of a case, from what its scene asks for.
+  std::shared_ptr<const Sample> sample;  ///< a quantity per varied number; null: combinations
+  std::vector<Setting> fixed;            ///< numbers that are the same in all cases
+  /// Settings of a case's run, from its scene's defaults.
   std::function<RunSettings(const RunDefaults&)> settings;
   std::vector<std::string> watched;  ///< columns of the trajectory: "P.x", with the unit or without
-  double max_cpu_seconds = 0;        ///< of a case; 0: none
+  double max_cpu_seconds = 0;        ///< per case; 0: none
   std::function<bool()> going_on;    ///< false stops cases under way
 
-  /// How many cases there are. @throws std::invalid_argument beyond 10 million, of a place that is
-  /// varied twice, and of a distribution without a sample.
+  /// Number of cases. @throws std::invalid_argument beyond 10 million, for a place varied twice,
+  /// and for a distribution without a sample.
   std::size_t cases() const;
   std::vector<double> values(std::size_t number) const;
 };
 
-/// What came of one case.
+/// Result of one case.
 struct SweepCase {
-  std::vector<double> values;   ///< of the varied numbers
+  std::vector<double> values;   ///< varied numbers
   std::string status = "done";  ///< done, failed, time limit; refused: there is no such mechanism
   std::string reason;           ///< one sentence when not done, or not to be relied on
   double stopped_at = 0;        ///< [s]
-  std::string drift_unit;       ///< and the drifts: as of RunResult
+  std::string drift_unit;       ///< this and the drifts as in RunResult
   double position_drift_max = not_measured, velocity_drift_max = not_measured,
          angle_drift_max = not_measured, angle_rate_drift_max = not_measured,
          energy_error_max = not_measured;
   long steps = 0, evaluations = 0;
-  std::vector<double> times;  ///< of a sample, where columns are watched: when [s]
+  std::vector<double> times;  ///< with a sample and watched columns [s]
   struct Watched {
     double last = not_measured, least = not_measured, greatest = not_measured;
-    std::string label;          ///< of a sample: the column with its unit
+    std::string label;          ///< with a sample: column with its unit
     std::vector<double> curve;  ///< at `times`
   };
   std::vector<Watched> watched;
   double cpu_s = not_measured;  ///< loading, assembling and running
 };
 
-/// One case from beginning to end. Whatever is wrong with it is in the result. @throws
-/// std::invalid_argument for what is wrong with all of them: a place that the scene does not have,
-/// a column that no trajectory has.
+/// Runs one case; its faults are in the result. @throws std::invalid_argument for faults of all
+/// cases: a place that the scene does not have, a column that no trajectory has.
 SweepCase run_case(const SweepRequest& request, std::size_t number);
 
 }  // namespace momenta

@@ -10,9 +10,9 @@
 namespace momenta {
 namespace {
 
-constexpr std::size_t most_rounds = 40;  // of runs of a millisecond
-constexpr double least_seconds = 0.05;   // of processor time, before scatter says anything
-constexpr double settled_within = 0.02;  // of the median
+constexpr std::size_t most_rounds = 40;  // for runs of a millisecond
+constexpr double least_seconds = 0.05;   // processor time before scatter counts
+constexpr double settled_within = 0.02;  // part of the median
 
 double median(std::vector<double> v) {
   std::sort(v.begin(), v.end());
@@ -23,7 +23,7 @@ std::string key_of_time(const RunSettings& settings, std::size_t round) {
   return "time " + std::to_string(round) + " of " + key_of(settings);
 }
 
-/// Why the repeat does not time the run; empty: both took the same steps.
+/// Reason why a repeat does not time the run; empty: both took the same steps.
 std::string another_course(const Counters& run, const TimedRun& repeat) {
   const Counters& again = repeat.counters;
   if (!repeat.reason.empty()) return "a repeat without measuring stopped: " + repeat.reason;

@@ -7,7 +7,7 @@
 namespace momenta {
 namespace {
 
-/// Columns of drifts of a mechanism.
+/// Number of drift columns.
 std::size_t drift_columns(const Mechanism& mechanism) {
   if (mechanism.m() == 0) return 0;
   return mechanism.has_lengths() && mechanism.has_angles() ? 4 : 2;
@@ -60,7 +60,7 @@ void TrajectoryRow::append_forces(double t, const Snapshot& state) {
   not_unique_.clear();
   forces_->solve(t, state.q, state.u);
   if (places_.empty()) return forces_->append(row_, not_unique_);
-  // Of what acts, beside whose loops there are those of stops that hold.
+  // The acting mechanism has loops of stops that hold besides.
   acting_.clear();
   not_unique_acting_.clear();
   forces_->append(acting_, not_unique_acting_);

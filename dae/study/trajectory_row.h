@@ -15,11 +15,11 @@ namespace momenta {
 
 class TrajectoryRow {
  public:
-  /// With the columns of trajectory_columns(); forces are left out until take_forces_of().
+  /// Row of trajectory_columns(), without forces until take_forces_of().
   TrajectoryRow(const Mechanism& mechanism, bool reactions);
 
-  /// From now on with forces, as `acting` has them: the mechanism, or it with the loops of stops
-  /// that hold. `e` and `solver` (null without loops) are of `acting`, used as workspaces.
+  /// Adds the forces of `acting`: the mechanism, or it with loops of stops that hold. `e` and
+  /// `solver` (null without loops) are of `acting`, used as workspaces.
   void take_forces_of(const Mechanism& acting, Evaluation<double>& e, LoopSolver* solver);
   /// Null without forces.
   const ForceColumns* forces() const { return forces_ ? &*forces_ : nullptr; }
@@ -29,11 +29,11 @@ class TrajectoryRow {
            const Drift& position, const Drift& velocity);
   const std::vector<double>& numbers() const { return row_; }
   const std::vector<std::string>& columns() const { return columns_; }
-  /// Where forces begin.
+  /// Place of the first force.
   std::size_t first_force() const { return first_force_; }
   /// Columns of forces that are not unique at the state.
   const std::vector<std::size_t>& not_unique() const { return not_unique_; }
-  /// Counts those at a sample, among the first `columns`.
+  /// Counts the columns not unique at a sample, among the first `columns`.
   void note_undetermined(double t, std::size_t columns, std::vector<RunResult::Undetermined>& all);
 
  private:
@@ -43,11 +43,11 @@ class TrajectoryRow {
   bool reactions_, both_;  ///< rows in m and rows in rad
   std::vector<std::string> columns_;
   std::optional<ForceColumns> forces_;
-  std::vector<std::size_t> places_;  ///< of the columns among those of what acts; empty: the same
+  std::vector<std::size_t> places_;  ///< by column: place among the acting's; empty: the same
   std::vector<double> markers_, row_, acting_;
   std::size_t first_force_ = 0;
   std::vector<std::size_t> not_unique_, not_unique_acting_;
-  std::vector<std::size_t> noted_;  ///< by column, where note_undetermined() has it
+  std::vector<std::size_t> noted_;  ///< by column: place in note_undetermined()'s list
 };
 
 }  // namespace momenta

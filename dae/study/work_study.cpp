@@ -28,8 +28,8 @@ RunSettings ladder(const Mechanism& mechanism, const Start& start, const WorkReq
   s.samples = request.samples;
   s.form = form;
   s.integrator = method;
-  // What the theory of each recommends: a one-step method may reset the gauge and correct
-  // positions, which makes `projected` of `acceleration`; others have feedback instead.
+  // As the theory recommends: a one-step method may reset the gauge and correct positions, which
+  // makes `projected` of `acceleration`; others have feedback instead.
   if (takes_gauge(form) && loops)
     s.gauge = !request.gauge.empty()                                               ? request.gauge
               : one_step || had_better_reset(mechanism, start, integrator(method)) ? "reset"
@@ -39,11 +39,11 @@ RunSettings ladder(const Mechanism& mechanism, const Start& start, const WorkReq
   return s;
 }
 
-/// One ladder each: settings but for tolerance and step.
+/// Settings of each ladder, but for tolerance and step.
 std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const Start& start,
                                       const WorkRequest& request) {
   const bool loops = mechanism.m() > 0;
-  // Of the methods asked for, those a form takes; its default where there is none among them.
+  // The requested methods that a form takes; if none, its default.
   const auto methods_of = [&](const std::string& form) {
     const bool dae = is_dae_form(form);
     std::vector<std::string> methods;
@@ -59,7 +59,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const Start& s
     if (!loops && !asked && form != "momentum" && form != "acceleration") continue;
     for (const std::string& method : methods_of(form)) {
       const bool one_step = !is_dae_form(form) && !integrator(method).multistep;
-      // Not twice the same, and not what the method cannot take, unless asked for.
+      // No duplicates, and no forms that the method cannot take, unless asked for.
       if (!asked && loops && form == "acceleration" && one_step) continue;
       if (!asked && needs_one_step_method(form) && !one_step) continue;
       ladders.push_back(ladder(mechanism, start, request, form, method));
@@ -105,10 +105,10 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
         results.push_back(run_form(mechanism, start, run));
         if (request.journal && going) request.journal->add(key, record_of(results.back()));
       }
-      // A tighter rung would need longer still; one that failed may be followed by one that works.
+      // A tighter rung would need longer; one that failed may be followed by one that works.
       if (!going || results.back().status == "time limit") break;
     }
-    // A method for stiff problems beside one that is held by its stability.
+    // Adds bdf where stability limits the method.
     const bool stiff = std::any_of(results.begin() + static_cast<long>(first), results.end(),
                                    [](const RunResult& r) { return !std::isnan(r.stiff_from); });
     if (stiff && request.integrators.empty() && !needs_one_step_method(ladders[i].form))
