@@ -36,10 +36,10 @@ class BodyMatrix {
   BodyMatrix(const BodyMatrix&) = delete;
   BodyMatrix& operator=(const BodyMatrix&) = delete;
 
-  /// One of each pair of places.
+  /// Structural nonzeros, one of each symmetric pair.
   const std::vector<KktPattern::Entry>& entries() const { return entries_; }
   int size() const { return impulse(loop_model_.rows); }
-  /// How the bodies are carried.
+  /// Tree of the bodies, for BodyFronts.
   BodyFronts::Bodies tree() const {
     BodyFronts::Bodies tree;
     tree.d = d;
@@ -54,7 +54,7 @@ class BodyMatrix {
   /// Places of u_j and σ_i.
   int rate(int j) const { return 2 * d * bodies() + j; }
   int impulse(int i) const { return rate(model_.nv) + i; }
-  /// Place in u of the joint that an unknown of the bodies belongs to; −1: to none alone.
+  /// Place in u of an unknown's joint; −1: it has none of its own.
   int joint_of(int unknown) const {
     if (unknown >= rate(0)) return unknown < impulse(0) ? unknown - rate(0) : -1;
     const auto& b = model_.bodies[static_cast<std::size_t>(unknown / d % bodies())];
@@ -78,7 +78,7 @@ class BodyMatrix {
       for (int i = 0; i < loop.rows && !loop.is_coupler(); ++i) {
         typename Space::template Force<double> on_a{}, on_b{};
         rows_.unit_wrench(l, i, on_a, on_b);
-        // axes turn, they do not move
+        // rows of axes act on ω alone
         const int first = i < loop.first_rows() ? 0 : d - (d == 3 ? 1 : 3);
         for (int c = first; c < d; ++c) {
           if (loop.a >= 0) entry(impulse(loop.row + i), velocity(loop.a, c), on_a[c]);

@@ -22,8 +22,7 @@ class EquationRows {
   /// Φ (m), eq. (1b).
   virtual void positions(S* phi) = 0;
 
-  /// Sets the rates u (nv), and so the velocities of all bodies. Null: zero rates, so that only
-  /// prescribed motion moves the bodies.
+  /// Sets the rates u (nv), and so all velocities. Null: zero rates, with prescribed motion alone.
   virtual void move(const S* u) = 0;
   /// Φ̇ = Φ_q u + Φ_t (m).
   virtual void velocities(S* rate) = 0;
@@ -38,8 +37,8 @@ class EquationRows {
   /// Φ̈ (m), eq. (2), with the accelerations of the last joint_forces().
   virtual void accelerations(S* rate) = 0;
 
-  /// Adds to `tau` (nv), a residual as that of the last joint_forces(), the friction of bearings
-  /// under the reactions found there (friction/bearings.h). `u` as in move().
+  /// Adds the friction of bearings under the reactions of the last joint_forces() to its residual
+  /// `tau` (nv); bearings.h. `u` as in move().
   virtual void bearing_friction(const S* /*u*/, S* /*tau*/) {}
 
   /// Φ_qᵀ x (nv).
@@ -56,12 +55,12 @@ class EquationRows {
   virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
 };
 
-/// What Mechanism::evaluation() returns. For scalars other than double it has the equations alone.
+/// The evaluation at one state. Scalars other than double have the equations alone.
 template <class S>
 class Evaluation : public EquationRows<S> {};
 
-/// In doubles it also has what no form differentiates: the entries of (7), the recursions for
-/// mechanisms without loops, forces, energies, markers.
+/// In doubles also the parts that no form differentiates: entries of (7), recursions without loops,
+/// forces, energies, markers.
 template <>
 class Evaluation<double> : public EquationRows<double> {
  public:
@@ -79,24 +78,24 @@ class Evaluation<double> : public EquationRows<double> {
                                    double* pdot) = 0;
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
-  /// From now on open_accelerations() adds τ (nv) to the joints' forces; null: none. Kept by
+  /// Sets forces τ (nv) that open_accelerations() adds to the joints'; null: none. Kept by
   /// reference.
   virtual void push(const double* /*tau*/) {}
 
-  /// The forces in each bearing, four numbers (friction/bearings.h), in the order of the scene's
-  /// joints. After joint_forces().
+  /// Forces in each bearing, four numbers (bearings.h), in the order of the scene's joints. After
+  /// joint_forces().
   virtual void bearing_loads(double* /*forces*/) {}
 
   /// Why a slot, a cam or an equation has no value or no derivatives at the last place(), one
   /// sentence that names it; empty where all have them.
   virtual std::string lost_loop() const = 0;
-  /// Where on its curve the point of each slot on a spline is, by place among the scene's loops
-  /// [m, along the chords]; of other loops not a number. After place().
+  /// Place of each slot's point on its spline [m, along the chords], by index of the scene's loop;
+  /// NaN for other loops. After place().
   virtual void slot_places(double* places) const = 0;
-  /// Of each spring-damper with limits, in the order of the scene, its length [m]. After place().
+  /// Length of each spring-damper with limits [m], in the order of the scene. After place().
   virtual void limited_lengths(double* /*lengths*/) const {}
 
-  /// Place in u of the joint at which the last call of these two failed.
+  /// Place in u of the joint at which the last open_…() call failed.
   virtual int singular_joint() const = 0;
 
   /// Generalised forces (nv) of springs, dampers and wrenches at points of bodies, at (t, q, u).
@@ -112,8 +111,8 @@ class Evaluation<double> : public EquationRows<double> {
   virtual double dissipated_power(const double* q, const double* u) = 0;
   /// How large the forces of formulas are, whether they balance or not [N, N m]. After move().
   virtual double formula_size() = 0;
-  /// Of which force a formula is not finite, which, and what was expected, one sentence; empty: all
-  /// are. After move().
+  /// A sentence naming a force whose formula is not finite, and what was expected; empty: all are
+  /// finite. After move().
   virtual std::string formula_without_value() = 0;
   /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
   virtual void markers(double* values) = 0;

@@ -14,7 +14,7 @@ std::vector<JointPlace> joint_places(const Mechanism& mechanism) {
       places.push_back(
           {lagrangian->coordinates[static_cast<std::size_t>(i)].name, {i}, {i}, {}, {}, -1});
   std::map<std::string, std::size_t> index;
-  std::vector<int> coordinate(tree.drives.size());  // that a drive prescribes
+  std::vector<int> coordinate(tree.drives.size());  // by drive: the coordinate it prescribes
   for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const auto [found, fresh] = index.try_emplace(b.joint, places.size());

@@ -1,7 +1,7 @@
 #pragma once
 // The joints of a mechanism by name, with the places of their numbers in q and u. A joint may be
 // carried by several bodies of the tree that share its name; its numbers are theirs in tree order.
-// Of a Lagrangian: its coordinates.
+// For a Lagrangian: its coordinates.
 
 #include <momenta/dae/mechanism.h>
 
@@ -19,7 +19,7 @@ struct JointPlace {
   int body = -1;  ///< −1: none; the last body of the joint, the one the scene's joint carries
 };
 
-/// In tree order of their first bodies. Cost O(bodies log joints).
+/// All joints, in tree order of their first bodies. O(bodies log joints).
 std::vector<JointPlace> joint_places(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -10,7 +10,7 @@ namespace momenta {
 
 class LagrangianEvaluation final : public LagrangianRows<double> {
  public:
-  /// `pattern`: that of the model, in its order.
+  /// `pattern`: the KKT pattern of `model`.
   LagrangianEvaluation(const LagrangianModel& model, const KktPattern& pattern)
       : LagrangianRows(model),
         factor_(pattern, model.n),

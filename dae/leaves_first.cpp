@@ -10,7 +10,7 @@ namespace momenta {
 namespace {
 
 constexpr int poses = 3;
-constexpr int motions_tried = 4;  // at each pose: of a single one rounding may happen to be small
+constexpr int motions_tried = 4;  // per pose: rounding in a single one may be small by chance
 constexpr double way = 0.2;       // from pose to pose [rad, lengths of the scene]
 
 class LeavesFirstError {
@@ -97,7 +97,7 @@ class LeavesFirstError {
     for (std::size_t i = 0; i < p.size(); ++i) p[i] -= prescribed[i];
   }
 
-  /// Along v, and back onto the loops.
+  /// Steps q along v and closes the loops.
   bool move(Eigen::VectorXd& q) {
     const double rate = fastest();
     if (!(rate > 0)) return false;
@@ -105,7 +105,7 @@ class LeavesFirstError {
     return close(q);
   }
 
-  /// Of v; not a number where one is not.
+  /// Largest |v_i| in its unit; NaN where one is NaN.
   double fastest() const {
     double most = 0;
     for (std::size_t i = 0; i < v_.size(); ++i)
@@ -113,7 +113,7 @@ class LeavesFirstError {
     return most;
   }
 
-  /// By Newton's steps, until the next would be rounding.
+  /// Newton's method onto the loops, until the next step would be rounding.
   bool close(Eigen::VectorXd& q) {
     constexpr int corrections = 6;
     constexpr double next_is_rounding = 1e-8;
@@ -140,7 +140,7 @@ class LeavesFirstError {
   Evaluation<double>& e_;
   const LeavesFirst& solve_;
   const std::vector<KktPattern::Entry>& pattern_;
-  std::vector<double> size_;  ///< of the rates: 1 rad/s or a length of the scene per second
+  std::vector<double> size_;  ///< units of rates: 1 rad/s or a length of the scene per second
   std::vector<double> inertia_, v_, v0_, p_, held_, sigma_, entries_;
   std::mt19937 random_{1};  // the same motions every time
 };

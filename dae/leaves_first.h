@@ -1,7 +1,7 @@
 #pragma once
-// Whether every joint can be eliminated before the loops that hold it. Where a joint turns or
-// slides next to nothing, a row of its loop that it moves has a pivot of 1/m, and the rows that
-// close after it have what the product of that one leaves,
+// Error of eliminating every joint before the loops that hold it. Where a joint moves next to no
+// mass m, a row of its loop has a pivot of 1/m, and the rows that close after it have what the
+// product of that one leaves,
 //
 //   w' = W_kk − W_ki f(w_i) W_ik:
 //
@@ -10,19 +10,17 @@
 //
 //   ε s/w' + (τ/w')⁴,         s = Σ M_j⁻¹|C_n|².
 //
-// What that comes to depends on where the light joint sits: at the foot of a ladder on nothing. So
-// it is measured. A motion v₀ is put onto the loops, M v + Φ_qᵀσ = M v₀, Φ_q v = 0, and each row
-// asked by how much of the size of its terms it is missed:
+// How much that is depends on the light joint's place, so it is measured. A motion v₀ is put onto
+// the loops, M v + Φ_qᵀσ = M v₀, Φ_q v = 0, and the error of each row taken relative to its terms:
 //
 //   ω = max |M (v − v₀) + Φ_qᵀσ|_i / (M_ii (|v_i| + |v₀_i|) + Σ|Φ_ki σ_k|),
 //           |Φ_q v|_k / Σ|Φ_ki|(|v_i| + |v₀_i|).
 //
-// To ω the solution is that of a mechanism whose numbers differ so much from this one's. A row that
-// is redundant, or lost at a singular pose, holds with the others: it has no part in ω. Next to
-// such a pose rows fade by half, whatever the masses are: so the least ω counts of the start, its
-// loops closed, and of two poses that motions lead to from there. ω at a pose is the largest of a
-// few motions: of a single one the roundings may cancel. Source: Oettli, Prager, Numer.
-// Math. 6 (1964) 405.
+// To ω the solution is that of a mechanism whose numbers differ by as much. A row that is
+// redundant, or lost at a singular pose, holds with the others and has no part in ω. Next to such a
+// pose rows fade by half, whatever the masses are: so the least ω of three poses counts, the closed
+// start and two that motions lead to from there. ω at a pose is the largest of a few motions, as
+// roundings of one may cancel. Source: Oettli, Prager, Numer. Math. 6 (1964) 405.
 
 #include <momenta/dae/mechanism.h>
 

@@ -14,13 +14,13 @@ class LeavesFirstMatrix {
  public:
   virtual ~LeavesFirstMatrix() = default;
 
-  /// At (t, q), where `e` is placed; E (m, null: 0; no row fades then) and `fade`, how weak a pivot
-  /// may be relative to its group's scale. False where a pivot of u is not positive,
-  /// singular_joint() then its place in u, or where a number is not finite. No allocation.
+  /// Factorises at (t, q), where `e` is placed. `compliance`: E (m), with which no row fades; null:
+  /// 0. `fade`: how weak a pivot may be relative to its group's scale. False where a pivot of u, at
+  /// place singular_joint(), is not positive or a number is not finite. No allocation.
   virtual bool factor(Evaluation<double>& e, double t, const double* q, const double* compliance,
                       double fade) = 0;
   virtual void solve(double* x) = 0;  ///< x (nv + m) ← A⁻¹ x
-  /// Of the last factor(), by row (m): the pivot w and below which it fades; 0: it does not.
+  /// Pivot w of each row (m) in the last factor(), and where it fades; 0: it does not.
   virtual const std::vector<double>& pivots() const = 0;
   virtual const std::vector<double>& fading() const = 0;
   /// Values of Φ_q there, in the order of Mechanism::constraint_pattern().
@@ -30,7 +30,7 @@ class LeavesFirstMatrix {
 
 std::unique_ptr<LeavesFirstMatrix> joint_matrix(const Mechanism& mechanism);
 std::unique_ptr<LeavesFirstMatrix> front_matrix(const Mechanism& mechanism);
-/// The one that fits: Mechanism::solved_by_bodies().
+/// The matrix that Mechanism::solved_by_bodies() asks for.
 std::unique_ptr<LeavesFirstMatrix> leaves_first_matrix(const Mechanism& mechanism);
 
 }  // namespace momenta

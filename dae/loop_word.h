@@ -3,7 +3,7 @@
 
 namespace momenta {
 
-/// What messages call that which a row of Φ belongs to.
+/// Word of messages for a constraint.
 inline const char* loop_word(const Mechanism& mechanism) {
   return mechanism.scene().lagrangian ? "constraint" : "loop";
 }

@@ -25,7 +25,7 @@ class MarkerPoints {
     }
   }
 
-  /// x y z [m] and velocity [m/s] of each. Needs poses and velocities.
+  /// Position [m] and velocity [m/s] of each marker. Needs poses and velocities.
   template <class S>
   void write(const Workspace<Space, S>& w, S* values) const {
     for (const Point& point : points_) {

@@ -18,7 +18,7 @@ namespace {
 // Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse
 // bookkeeping.
 constexpr int dense_limit = 60;
-// In joints from the ground, the mean over bodies.
+// Mean depth of the bodies of a deep tree [joints].
 constexpr double deep_tree = 40;
 
 Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
@@ -196,8 +196,8 @@ void Mechanism::take_weights() {
     take(std::get<1>(casts_->cast));
 }
 
-/// A joint may have no inertia until a loop closes above it: one solution at the start tells, or
-/// where rounding is left in place of zero, what that is made of.
+/// A joint may have no inertia until a loop closes above it: one solution at the start fails then,
+/// or finds rounding for its inertia.
 std::string Mechanism::joint_without_inertia(bool swept) const {
   const auto size = static_cast<std::size_t>(tree_.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
@@ -211,9 +211,8 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   } else {
     const auto sweeps = looped_sweeps();
     RightSide<double> right;
-    right.fade =
-        fade_beside(fade_evaluation,
-                    masses_apart_);  // rows that depend on others leave dust for inertia otherwise
+    right.fade = fade_beside(fade_evaluation,
+                             masses_apart_);  // otherwise redundant rows leave rounding for inertia
     if (!sweeps->momentum(0, tree_.q0.data(), p.data(), right, u.data(), sigma.data(), nullptr))
       return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   }
@@ -222,7 +221,7 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   return unheld.joints.empty() ? "" : light_before_loops(unheld.joints.front().rate);
 }
 
-/// What a solution with the joints before the loops misses, where masses are apart.
+/// How far eliminating joints before loops misses (7) where masses are apart; empty: little.
 std::string Mechanism::loops_missed(bool swept) const {
   constexpr double nothing_lost = 1e4;
   if (masses_apart_ < nothing_lost) return "";
@@ -246,7 +245,7 @@ std::string Mechanism::loops_missed(bool swept) const {
     const auto matrix = leaves_first_matrix(*this);
     const auto own = evaluation<double>();
     std::vector<double> x(static_cast<std::size_t>(nv() + m()));
-    std::vector<double> place;  // of what is factorised, and its fade
+    std::vector<double> place;  // q and fade of the factors at hand
     error = leaves_first_error(*this, *e,
                                [&](const double* q, const double* p, double beta, double fade,
                                    double* v, double* sigma) -> std::optional<bool> {

@@ -31,7 +31,7 @@ enum class KktChoice {
 /// The name that `--kkt` takes.
 const char* name_of(KktChoice choice);
 
-/// What runs integrate (dae/cut/integrated_scene.h).
+/// The mechanism that runs integrate (dae/cut/integrated_scene.h).
 enum class CutChoice {
   automatic,  ///< bodies folded and joints cut for the least work found
   scene       ///< the scene as it is written
@@ -39,9 +39,9 @@ enum class CutChoice {
 
 /// Options that a scene does not contain.
 struct MechanismOptions {
-  Algebra algebra = Algebra::automatic;  ///< which kernel
-  KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
-  CutChoice cut = CutChoice::automatic;  ///< what runs integrate
+  Algebra algebra = Algebra::automatic;
+  KktChoice kkt = KktChoice::automatic;
+  CutChoice cut = CutChoice::automatic;
 };
 
 /// A column of trajectory.csv.
@@ -52,9 +52,9 @@ struct Column {
   std::string label() const { return name + " [" + unit + "]"; }
 };
 
-/// A mechanism, loops included; or, of a scene with a Lagrangian, what its formulas say: then no
-/// bodies, the coordinates of the scene for joints, its constraints for loops. Immutable, so
-/// threads may share it; it must outlive everything made from it.
+/// A mechanism, loops included; of a scene with a Lagrangian its formulas: no bodies, its
+/// coordinates for joints, its constraints for loops. Immutable, so threads may share it; it must
+/// outlive everything made from it.
 class Mechanism {
  public:
   /// @throws SceneError
@@ -63,8 +63,8 @@ class Mechanism {
   Mechanism(const Mechanism&) = delete;
   Mechanism& operator=(const Mechanism&) = delete;
 
-  const Scene& scene() const { return scene_; }                 ///< as given
-  const MechanismOptions& options() const { return options_; }  ///< as given
+  const Scene& scene() const { return scene_; }  ///< as given
+  const MechanismOptions& options() const { return options_; }
   const Tree& tree() const { return tree_; }  ///< bodies in the order of the sweeps
   /// The tapes of the scene's Lagrangian. @pre it has one
   const LagrangianModel& lagrangian() const;
@@ -79,18 +79,17 @@ class Mechanism {
   /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
   /// that point, and a solution so made is right to most_leaves_first_error (leaves_first.h).
   bool leaves_first() const { return light_.empty(); }
-  /// Whether a sparse matrix is that of the bodies' equations. It is where bodies are on average
-  /// more than 40 joints from the ground: there the matrix of the joints' equations costs more.
-  /// O(bodies)
+  /// Whether the sparse matrix is that of the bodies' equations: the joints' equations cost more
+  /// where bodies are on average more than 40 joints from the ground. O(bodies)
   bool solved_by_bodies() const;
   /// LoopWeights::spread
   double mass_spread() const { return mass_spread_; }
   /// LoopWeights::apart
   double masses_apart() const { return masses_apart_; }
-  /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the best of the
-  /// machine. `branches_side_by_side`: for one state, the spatial sweeps take folded branches of
-  /// one shape side by side in the lanes of a register. @throws std::logic_error where there are no
-  /// loops, or where more loop equations are open at once than there are slots
+  /// The sweeps that carry the loops, for one instruction level; 0: the machine's best.
+  /// `branches_side_by_side`: for one state, spatial sweeps take folded branches of one shape in
+  /// the lanes of a register. @throws std::logic_error where there are no loops, or more loop
+  /// equations are open at once than there are slots
   std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0,
                                               bool branches_side_by_side = true) const;
   /// The same with the loops between the pairs of bodies that the scene gives.
@@ -100,54 +99,45 @@ class Mechanism {
   bool has_body_forces() const;   ///< springs, bushings, wrenches or formulas
   bool has_forces_apart() const;  ///< among them coordinate springs or formulas
   bool has_joint_forces() const;  ///< springs, dampers, friction or torques of joints
-  /// Nonzeros of M and Φ_q in (7). Computed at the first call, so that long chains whose M is never
-  /// assembled do not pay for it. O(Σ depth)
+  /// Nonzeros of M and Φ_q in (7), computed at the first call. O(Σ depth)
   const KktPattern& kkt_pattern() const;
   /// Nonzeros of Φ_q alone. O(length of all loops)
   const std::vector<KktPattern::Entry>& constraint_pattern() const;
-  /// The name of each row of Φ (m).
   const std::vector<RowName>& rows() const { return row_names_; }
-  /// Group index of each row. Rows of one loop and one kind (points, axes, distance or coupling)
-  /// form a group: they share a unit and so a scale.
+  /// Group index of each row: rows of one loop and one kind (points, axes, distance or coupling)
+  /// share a unit and so a scale.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
-  /// Whether each row is one of velocities, A(q) u = b, that no row of positions stands behind: its
-  /// Φ is 0, its Φ_q in all that is said of rows is A, its Φ̇ is A u − b (m).
+  /// Whether each row (m) is one of velocities, A(q) u = b, without a row of positions behind it:
+  /// its Φ is 0, its Φ_q is A, its Φ̇ is A u − b.
   const std::vector<bool>& nonholonomic() const { return nonholonomic_; }
-  /// Whether there are such.
   bool has_nonholonomic() const;
-  /// Whether each row is an angle [rad]: rows of axes, and couplers of angles alone. All others are
-  /// lengths [m].
+  /// Whether each row is an angle [rad]: rows of axes, couplers of angles alone. Others are lengths
+  /// [m].
   const std::vector<bool>& angle_rows() const { return angle_rows_; }
-  /// Whether there are rows of lengths.
   bool has_lengths() const;
-  /// Whether there are rows of angles.
   bool has_angles() const;
 
-  /// The size of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which the row is rounding alone, whatever the
-  /// other rows of its loop are: LoopWeights::least_scales, by row. For example, four of the five
-  /// rows of a slide along the axis of a cylindrical joint contain only rounding. Zero for rows of
-  /// axes, whose natural size is known, and for couplers. [1/kg]
+  /// LoopWeights::least_scales by row (m) [1/kg]: size of a row of Φ_q M⁻¹ Φ_qᵀ below which it is
+  /// rounding alone, as are four of the five rows of a slide along the axis of a cylindrical joint.
+  /// Zero for rows of axes, whose natural size is known, and for couplers.
   const std::vector<double>& least_scales() const { return least_scales_; }
-  /// The scales by which the rows are measured, made from these.
+  /// The scales by which rows are measured.
   AxisScale axis_scale() const;
 
   /// A workspace for one thread; S is double, Dual8, LocalDual or Jet.
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
 
-  /// Names and units of q (nq), in the order of their columns in trajectory.csv.
+  /// Names and units of the columns of q (nq), u (nv), markers' positions and velocities, λ (m) by
+  /// row of Φ, and efforts of joints' drives in the order of Tree::drives.
   std::vector<Column> coordinate_columns() const;
-  /// The same for u (nv).
   std::vector<Column> rate_columns() const;
-  /// The same for the position and velocity of each marker.
   std::vector<Column> marker_columns() const;
-  /// The same for λ (m), by row of Φ.
   std::vector<Column> multiplier_columns() const;
-  /// The same for the efforts of the drives of joints, in the order of Tree::drives.
   std::vector<Column> effort_columns() const;
 
-  /// Lines of the plan: those of core and those of the loops.
+  /// Lines of the plan, of core and of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
   /// Why a solution failed at (t, q): one sentence naming the joints that neither inertia nor a
@@ -155,7 +145,7 @@ class Mechanism {
   std::string no_inertia(int rate, double t, const double* q) const;
 
  private:
-  /// What branches the sweeps take side by side; empty: none.
+  /// Branches that the sweeps take side by side; empty: none.
   std::string looped_branches_in_words() const;
   std::vector<std::pair<std::string, std::string>> lagrangian_lines() const;
   template <class Space>
@@ -197,7 +187,6 @@ class Mechanism {
   std::vector<double> least_scales_;
 };
 
-/// The evaluation in doubles.
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;

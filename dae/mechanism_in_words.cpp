@@ -1,4 +1,4 @@
-// What a mechanism is called: columns of results, lines of the plan, joints that fail.
+// Words for a mechanism: columns of results, lines of the plan, joints that fail.
 
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
@@ -10,15 +10,15 @@
 namespace momenta {
 namespace {
 
-/// What coordinate i of a joint without a quaternion adds to the name of its scene joint: "q", or
-/// the number of its coordinate behind it where the scene's joint has several.
+/// Name of the column of coordinate i of a joint without a quaternion; numbered where the scene's
+/// joint has several coordinates.
 std::string one_dof_column(const Tree::Body& b, const char* letter, int i = 0) {
   const bool several = b.parts > 1 || b.nv > 1;
   return b.joint + "." + letter + (several ? std::to_string(b.coordinate + i) : "");
 }
 
-/// What spherical joints of a tree without loops leave out: the elimination of bodies that carry
-/// nothing, and the sweeps where there is nothing else.
+/// Work saved at spherical joints of a tree without loops: bodies that carry nothing are eliminated
+/// once; where there are no others nothing is swept.
 std::string tops_in_words(const LinkTree& tree) {
   std::size_t ends = 0, tops = 0;
   for (const Link& l : tree.links) {
@@ -176,7 +176,7 @@ bool is_zero(const Expression& formula, std::size_t i) {
   return in.operation == formula::Operation::number && in.number == 0;
 }
 
-/// A coordinate whose rate no momentum tells, in a sentence; empty: there is none.
+/// A sentence naming a coordinate whose rate no momentum determines; empty: none.
 std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& spec) {
   std::vector<bool> held(spec.coordinates.size(), false);
   for (const auto& place : model.constraint.places)

@@ -1,6 +1,5 @@
 #pragma once
-// What a mechanism holds in the algebra of its plan: models, links and loops as evaluations and
-// sweeps read them.
+// Models, links and loops of a mechanism in the algebra of its plan.
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/model.h>
@@ -25,11 +24,11 @@ struct Mechanism::Cast {
 };
 
 struct Mechanism::Casts {
-  std::variant<Cast<Planar>, Cast<Spatial>> cast;  ///< of no bodies where there is a Lagrangian
+  std::variant<Cast<Planar>, Cast<Spatial>> cast;  ///< without bodies where there is a Lagrangian
   std::optional<LagrangianModel> lagrangian;
 };
 
-/// f of the one there is.
+/// Calls f with the Cast of the plan's algebra.
 template <class F>
 decltype(auto) Mechanism::visit(F&& f) const {
   const auto& cast = casts_->cast;

@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-/// Asks for finite values where the scene starts.
+/// Refuses a scene whose formulas are not finite at the start.
 class StartCheck {
  public:
   StartCheck(const Mechanism& mechanism)
@@ -72,8 +72,8 @@ class StartCheck {
   std::vector<double> values_;
 };
 
-/// Where the gradient of a constraint vanishes, as where a curve crosses itself, its row has no
-/// scale of its own: it has a part of that at the start.
+/// Least scale of each constraint's row, a part of its scale at the start: where the gradient
+/// vanishes, as where a curve crosses itself, the row has none of its own.
 std::vector<double> scales_of_constraints(const Mechanism& mechanism,
                                           const LagrangianModel& model) {
   constexpr double part = 0.1;

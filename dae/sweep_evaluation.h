@@ -41,8 +41,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     each_constraint_entry([&](int, int, double value) { *values++ = value; });
   }
   /// Calls entry(row, column, value) for the structural nonzeros of Φ_q: the joints between each
-  /// end of a loop and the lowest common ancestor of its bodies; above it the two ends cancel. Of a
-  /// coupler its ratios.
+  /// end of a loop and the lowest common ancestor of its bodies (above it the two ends cancel), or
+  /// the ratios of a coupler.
   template <class Entry>
   void each_constraint_entry(Entry&& entry) {
     for (std::size_t i = 0; i < loops_.model().loops.size(); ++i) {
@@ -196,11 +196,11 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   void markers(double* values) override { markers_.write(w_, values); }
 
  private:
-  /// Forces at the points inward, and ratios where coordinates are: each joint on the ways once.
+  /// Row of an equation: its points' forces carried inward plus its coordinates' ratios.
   template <class Entry>
   void each_entry_of_equation(const typename LoopModel<Space>::Loop& l, Entry&& entry) {
     const auto& equation = *loops_.model().equations[static_cast<std::size_t>(l.equation)];
-    inward_.resize(w_.body.size());  // once
+    inward_.resize(w_.body.size());  // allocates once
     for (const int k : equation.way) inward_[static_cast<std::size_t>(k)] = {};
     loops_.each_point_wrench(
         l, [&](int k, const Force& f) { inward_[static_cast<std::size_t>(k)] += f; });

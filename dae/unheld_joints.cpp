@@ -13,10 +13,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double motion_part = 1e-9;  // of a motion's largest rate
-constexpr double held_pivot = 1e-9;   // of pivots of Φ_q N, beside the largest terms of a column
+constexpr double motion_part = 1e-9;  // relative to a motion's largest rate
+constexpr double held_pivot = 1e-9;   // pivots of Φ_q N, relative to the largest terms of a column
 
-/// M of a Lagrangian need not be positive: there what a pivot leaves may move what has inertia.
+/// M of a Lagrangian may be indefinite: the motion of a lost pivot may have momentum.
 void keep_those_without_momentum(const MatrixXd& mass, std::vector<MasslessJoint>& joints) {
   constexpr double rounding = 1e-12;
   std::erase_if(joints, [&](const MasslessJoint& joint) {
@@ -25,16 +25,16 @@ void keep_those_without_momentum(const MatrixXd& mass, std::vector<MasslessJoint
   });
 }
 
-/// Y, columns.
+/// Columns Y with Φ_q N Y = 0.
 MatrixXd left_free(const MatrixXd& constraint, const MatrixXd& motions) {
   MatrixXd a = constraint * motions;
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double size = (constraint.cwiseAbs() * motions.col(k).cwiseAbs()).maxCoeff();
     if (size > 0) a.col(k) /= size;
   }
-  // Beside what its terms are, not beside the largest: where all of them cancel, none holds.
+  // A column is measured by its terms, not by its largest entry: where all cancel, no loop holds.
   MatrixXd y = left_null_space(a.transpose(), held_pivot);
-  if (y.cols() == 0) return y;  // all are held; rows of nothing lie nowhere
+  if (y.cols() == 0) return y;  // all are held
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double size = (constraint.cwiseAbs() * motions.col(k).cwiseAbs()).maxCoeff();
     if (size > 0) y.row(k) /= size;
@@ -77,7 +77,7 @@ UnheldJoints unheld_by_rounding(const Mechanism& mechanism, Evaluation<double>& 
                                 const double* q, bool loops) {
   if (!inertia_may_be_missing(mechanism.tree())) return {};
   UnheldJoints found = unheld_joints(mechanism, e, t, q, loops);
-  // Of more rates than most_pivots it is not known whether loops hold them.
+  // Beyond most_pivots rates it is unknown whether loops hold them.
   if (found.motions.cols() == 0 && loops && mechanism.m() > 0) found.joints.clear();
   return found;
 }
@@ -115,7 +115,7 @@ std::string mass_without_inverse(const Mechanism& mechanism, Evaluation<double>&
 
 bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evaluation<double>& e,
                   const VectorXd& r, const VectorXd& g, VectorXd& x, VectorXd& lambda) {
-  constexpr double powerless = 1e-12;  // of the largest force
+  constexpr double powerless = 1e-12;  // relative to the largest force
   const Eigen::Index n = mechanism.nv(), m = g.size();
   const Eigen::Index motions = unheld.motions.cols();
   if ((motions == 0 && !unheld.joints.empty()) || n + m > 2 * most_pivots) return false;
@@ -133,9 +133,9 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
     a.bottomLeftCorner(m, n) = dense_constraints(mechanism, e);
     a.topRightCorner(n, m) = a.bottomLeftCorner(m, n).transpose();
   }
-  // Rows of Φ of one size beside inertias of one size.
+  // Scales inertias and rows of Φ to unit size.
   VectorXd scale = VectorXd::Ones(n + m), b(n + m);
-  const double least = 1e-12 * mass.diagonal().maxCoeff();  // of what loops alone hold
+  const double least = 1e-12 * mass.diagonal().maxCoeff();  // for rates that loops alone hold
   for (Eigen::Index i = 0; i < n; ++i)
     if (mass(i, i) > 0) scale[i] = 1 / std::sqrt(std::max(mass(i, i), least));
   for (Eigen::Index i = n; i < n + m; ++i) {

@@ -88,8 +88,7 @@ class Assembler {
     return found;
   }
 
-  /// Where axes that the loops hold in one are turned (turned_loops.h): to a pose where they are
-  /// not.
+  /// Leads a pose that closes loops turned (turned_loops.h) to one that does not.
   void turn_back(const Mechanism& mechanism, Closing& closing, Closing::Pose& found, Assembly& a) {
     const std::vector<TurnedLoop> turned = turned_loops(mechanism, t_, found.q);
     if (turned.empty()) return;
@@ -131,7 +130,7 @@ class Assembler {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
       if (open.empty()) at = place;
-      // A gap so small that it has to be told what it is more than.
+      // A gap so small names the bound that it exceeds.
       if (largest < 1e-6 * row_[row - 1] && within.empty()) {
         char bound[32];
         std::snprintf(bound, sizeof bound, " to %.2g", tolerance * row_[row - 1]);
@@ -165,7 +164,7 @@ class Assembler {
       if (b.drive < 0) continue;
       double f = 0, rate = 0, bend = 0;
       tree.drives[static_cast<std::size_t>(b.drive)].evaluate(t_, f, rate, bend);
-      // Without rates of its own: is_length() does not know it.
+      // A driven joint has no rates: is_length() does not know it.
       fastest = std::max(fastest, std::abs(rate) / (b.kind == JointKind::prismatic ? length : 1));
     }
     return fastest;
@@ -179,7 +178,7 @@ class Assembler {
     const auto fastest = [&] {
       return u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0;
     };
-    const double given = fastest();  // whose rounding is in what is left of it
+    const double given = fastest();  // its rounding stays in the result
     for (int pass = 0; pass < 2; ++pass) {
       e().move(u.data());
       e().velocities(rate.data());
@@ -195,7 +194,7 @@ class Assembler {
     double largest = 0;
     for (const double x : j) largest = std::max(largest, std::abs(x));
     const double scale = prescribed + std::max(given, fastest()) * (1 + largest);
-    // Of redundant equations rates keep what the singular values that do not count leave.
+    // Rates keep the part of redundant equations in singular values that do not count.
     const bool known = a.rank == mechanism_.m() || a.kept > 0;
     const double left = std::max(1e-10, known ? 2 * a.dropped : rank_tolerance);
     if (rate.cwiseQuotient(row_).cwiseAbs().maxCoeff() <= left * scale) return;
@@ -215,7 +214,7 @@ class Assembler {
                      "; expected rates that the " + loop_word(mechanism_) + "s allow");
   }
 
-  /// Of the rows that are not nonholonomic, held joints or not.
+  /// Rank of the holonomic rows, held joints included.
   int rank_of_positions() {
     std::vector<double> values = scaled_entries(mechanism_, e(), loops_.units());
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -232,7 +231,7 @@ class Assembler {
     a.dependent_rows = std::move(judged.dependent);
   }
 
-  /// That rates which are free are those of motions.
+  /// Refuses, or reports, free rates that no motion has.
   void expect_motions(Assembly& a) {
     const Rigidity found = second_order(loops_, t_, a.start.q, a.rank);
     e().place(t_, a.start.q.data());
@@ -272,7 +271,7 @@ std::string residue_in_words(const Mechanism& mechanism, const Eigen::VectorXd& 
   const auto loop_of = [&](Eigen::Index row) -> const std::string& {
     return mechanism.rows()[static_cast<std::size_t>(row)].loop;
   };
-  // Those whose equations are open with it by a thousandth as much at least.
+  // Loops whose equations are open by a thousandth as much at least.
   std::vector<std::string> others;
   for (Eigen::Index i = 0; i < open.size(); ++i)
     if (open[i] > 1e-3 * largest && loop_of(i) != loop_of(worst) &&

@@ -33,8 +33,8 @@ class Bend {
  private:
   static constexpr int motions = 3, newton_steps = 12;
   static constexpr double length = 0.1;  // [rad or lengths]
-  // Of redundant rows at most left_by_files is left, and that changes by a part of itself; 0.1² / 2
-  // of curvatures of one.
+  // Φ_D of redundant rows is at most left_by_files and changes by a part of itself; by 0.1² / 2 for
+  // curvatures of one.
   static constexpr double bent = 10 * left_by_files;
 
   void look(const VectorXd& q, Bending& found) {
@@ -68,7 +68,7 @@ class Bend {
     }
   }
 
-  /// The rows that are not dropped closed from q, by Newton's method; what the others then have.
+  /// Closes the held rows from q by Newton's method; `dropped`: Φ of the others then.
   bool hold(VectorXd& q, VectorXd& dropped) {
     for (int i = 0; i < newton_steps; ++i) {
       dropped = loops_.gap(t_, q);

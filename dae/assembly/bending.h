@@ -20,8 +20,8 @@ namespace momenta {
 
 struct Bending {
   bool bends = false;   ///< some Φ_D changes: the pose is stretched, the rows are not redundant
-  bool closes = false;  ///< it becomes less in some direction
-  std::vector<Eigen::VectorXd> nearer;  ///< there, about closed: starts for Newton's method
+  bool closes = false;  ///< Φ_D shrinks in some direction
+  std::vector<Eigen::VectorXd> nearer;  ///< poses there, nearly closed: starts for Newton's method
 };
 
 /// At q and time t [s], where J Jᵀ Φ is about zero. D: rows dependent at q; where there are none,

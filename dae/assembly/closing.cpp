@@ -11,14 +11,14 @@
 namespace momenta {
 namespace {
 
-constexpr double closed_gap = 1e-12;  // |Φ|∞, in units; at least
+constexpr double closed_gap = 1e-12;  // least tolerance of |Φ|∞, in units
 constexpr int damped_iterations = 200;
 constexpr double largest_step = 0.4;  // [rad or lengths]: stay on the branch of the guess
 constexpr double far = 0.1;           // [rad or lengths]: Newton's steps may leave the branch
 constexpr int undamped_iterations = 40;
 constexpr double seed_distances[] = {0.3, 1, 3};
 constexpr int most_seeds = 8;            // at each distance
-constexpr double seed_entries = 100000;  // of Φ_q, all seeds of a distance together
+constexpr double seed_entries = 100000;  // entries of Φ_q, all seeds of a distance together
 
 double largest_of(const std::vector<double>& j) {
   double largest = 0;
@@ -37,8 +37,8 @@ Closing::Closing(ScaledLoops& loops, LeastNorm& steps, double t)
       t_(t),
       tolerance_(std::max(closed_gap, loops.units().rounding)) {}
 
-/// Where a step leads, shortened until the loops close further; near rounding level they no longer
-/// do, and the norm stays at infinity.
+/// A step, shortened until the loops close further; near rounding level they do not, and the norm
+/// stays infinite.
 struct Closing::Trial {
   Eigen::VectorXd q;
   double norm = std::numeric_limits<double>::infinity();
@@ -62,8 +62,7 @@ Closing::Trial Closing::along(const Eigen::VectorXd& q, double norm, Eigen::Vect
   return best;
 }
 
-/// Minimises |J δ + φ|² + λ² |δ|², λ = |φ|, but not so small that rows which are dust beside the
-/// others count.
+/// Minimises |J δ + φ|² + λ² |δ|², λ = |φ|, but large enough that rows of rounding do not count.
 Eigen::VectorXd Closing::damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi) {
   steps_.factor(j, std::max(phi.norm(), rank_tolerance * largest_of(j)));
   return -steps_.solve(phi);
@@ -75,18 +74,18 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
   int stalled = 0;
   newton_.emplace();
   std::vector<double> j;
-  // Factorised where the loops are closed: J changes by rounding from there.
+  // Factors stay once the loops are closed: J changes by rounding from there.
   bool settled = false;
   for (int count = 0; count < most && norm > 1e-16 && stalled < 2; ++count, ++iterations_) {
     if (!settled) steps_.factor(j = loops_.jacobian());
     settled = largest_of(phi) <= tolerance_;
-    // What contradicts itself stays open: damped steps would lead along the mechanism's own motion
-    // to where it is a little less.
+    // A contradiction stays open: damped steps would follow the mechanism's own motion to where it
+    // is a little less.
     const bool contradicts = !settled && largest_of(phi) <= left_by_files && is_redundant(j);
     Trial next = along(q, norm, -steps_.solve(phi));
-    // Redundant rows are redundant only where the loops are closed: off it they ask, through
-    // pivots as small as the gap, for steps that lead nowhere. Damping by the gap is harmless
-    // near the end, where it vanishes faster than what is left to do.
+    // Redundant rows are so only where the loops are closed: elsewhere they ask, through pivots as
+    // small as the gap, for steps that lead nowhere. Damping by the gap is harmless near the end,
+    // where it vanishes faster than the error.
     bool is_damped = false;
     if (!settled && !contradicts && !(next.norm < 0.5 * norm))
       if (Trial damped = along(q, norm, damped_step(j, phi)); damped.norm < next.norm) {
@@ -101,7 +100,7 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
     q = next.q;
     phi = gap(q);
     norm = next_norm;
-    // What closes goes on to rounding.
+    // Loops that close go on to rounding.
     if (const double open = largest_of(phi); contradicts && open > tolerance_ && is_least(q, open))
       break;
   }
@@ -115,7 +114,7 @@ bool Closing::is_redundant(const std::vector<double>& j) {
          std::count(loops_.rows.begin(), loops_.rows.end(), true);
 }
 
-/// Whether what is open, no more than a file leaves by rounding, is of redundant equations alone.
+/// Whether redundant equations alone are open, by no more than a file's rounding.
 bool Closing::is_least(const Eigen::VectorXd& q, double open) {
   if (!(open <= left_by_files)) return false;
   const Eigen::VectorXd phi = gap(q);
@@ -147,7 +146,7 @@ Closing::Pose Closing::bent(const Pose& open) {
   return open;
 }
 
-/// The gap closed continuously, down to a hundredth; false where it gets stuck before.
+/// Closes the gap continuously, down to a hundredth; false where it gets stuck.
 bool Closing::follow(Eigen::VectorXd& q) {
   constexpr double longest = 0.05, bend = 0.3, least_part = 1e-4;
   constexpr int most_steps = 600;
@@ -220,7 +219,7 @@ Closing::Pose Closing::from_seeds(const Eigen::VectorXd& guess,
   return nearest;
 }
 
-/// Where steps that stay near the guess leave the loops open.
+/// Ways for a guess near which the loops stay open.
 Closing::Pose Closing::anywhere(const Eigen::VectorXd& guess, Pose open) {
   if (Pose beside = bent(open); beside.is_closed) {
     branch_ =

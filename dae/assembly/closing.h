@@ -50,18 +50,18 @@ class Closing {
   /// From the guess q. Cost: least-norm factorisations of Φ_q, 10 to 200 where it closes; up to
   /// 5000 where nothing does.
   Pose close(const Eigen::VectorXd& guess);
-  /// The nearest to the guess of the poses that close from starts around it, by the last of these
-  /// ways, and that are `wanted`; open where there is none.
+  /// The `wanted` pose nearest to the guess of those that close from seeds; open where there is
+  /// none.
   Pose from_seeds(const Eigen::VectorXd& guess, const std::function<bool(const Pose&)>& wanted);
   /// From q by damped steps alone: the pose beside it, where there is one.
   Pose beside(const Eigen::VectorXd& q) { return damped(q, seed_iterations); }
 
   /// The steps of the last close(), from the guess to the pose; none where others were among them.
   const std::optional<std::vector<NewtonStep>>& newton_steps() const { return newton_; }
-  double tolerance() const { return tolerance_; }  ///< of |Φ|∞, in units
+  double tolerance() const { return tolerance_; }  ///< for |Φ|∞, in units
   int iterations() const { return iterations_; }
-  /// Which of several assemblies this is, where the guess does not decide it at once: one sentence,
-  /// or empty.
+  /// One sentence on which of several assemblies this is, where the guess does not decide it at
+  /// once; else empty.
   const std::string& branch() const { return branch_; }
 
  private:
@@ -84,7 +84,7 @@ class Closing {
   double t_, tolerance_;
   int iterations_ = 0;
   std::string branch_;
-  std::optional<std::vector<NewtonStep>> newton_;  ///< of the last damped()
+  std::optional<std::vector<NewtonStep>> newton_;  ///< steps of the last damped()
 };
 
 }  // namespace momenta

@@ -7,7 +7,7 @@ namespace momenta {
 
 Contradiction contradiction(ScaledLoops& loops, double t, const Eigen::VectorXd& q, double pivot) {
   constexpr double elsewhere = 100;
-  constexpr double rounding = 1e-14;  // of singular values, beside the largest
+  constexpr double rounding = 1e-14;  // singular values, relative to the largest
   const Mechanism& mechanism = loops.mechanism();
   Contradiction found{Eigen::VectorXd::Zero(mechanism.m()), pivot, 0};
   if (mechanism.m() == 0 || mechanism.nv() == 0) return found;

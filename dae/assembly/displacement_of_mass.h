@@ -12,7 +12,7 @@
 
 namespace momenta {
 
-/// Between q and q' (nq) at time t [s] [kg m²]. O(bodies)
+/// ∫ |x − x'|² dm between q and `other` (nq) at time t [s] [kg m²]. O(bodies)
 double displacement_of_mass(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                             const Eigen::VectorXd& other);
 

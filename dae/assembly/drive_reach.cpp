@@ -13,12 +13,12 @@ namespace momenta {
 namespace {
 
 constexpr double longest_step = 0.1;  // [rad or lengths] of any joint
-/// What a corrector may add to a predictor's step. Next to a dead point, q ~ (t* − t)^(1/2), it
-/// keeps h below 0.2 (t* − t): a gap behind which loops close again is not stepped over.
+/// Largest correction of a predictor's step. Next to a dead point, q ~ (t* − t)^(1/2), it keeps h
+/// below 0.2 (t* − t): a gap behind which loops close again is not stepped over.
 constexpr double most_correction = 0.05;
-constexpr double closed = 1e-11;  // |Φ|∞, in the same units; at least
+constexpr double closed = 1e-11;  // least tolerance of |Φ|∞, in the same units
 constexpr int most_steps = 5000;
-constexpr double resolution = 1e-9;  // of the time in which drives move by one unit
+constexpr double resolution = 1e-9;  // share of the time in which drives move by one unit
 
 class Continuation {
  public:
@@ -30,7 +30,7 @@ class Continuation {
         closed_(std::max(closed, 4 * loops_.units().rounding)),
         t_(t),
         q_(std::move(q)) {
-    // What redundant equations leave open where it begins they leave on the way.
+    // Gaps of redundant equations at the start stay on the way.
     const double open = loops_.gap(t_, q_).cwiseAbs().maxCoeff();
     if (open > closed_ && open <= left_by_files &&
         steps_.judge(loops_.jacobian(), Judged::dependence).rank < mechanism.m())
@@ -64,7 +64,7 @@ class Continuation {
   /// gap.
   std::optional<Eigen::VectorXd> corrected(double t, Eigen::VectorXd q, double most_way,
                                            bool damped);
-  /// Whether loops close a little later near by, and if so goes there.
+  /// Goes on to where loops close a little later near by; false: they do not.
   bool passes(double step, double end);
 
   const Mechanism& mechanism_;
@@ -87,8 +87,8 @@ bool Continuation::leave_free_joints(bool& all_determined) {
     has_columns[static_cast<std::size_t>(row)] = true;
   }
   loops_.columns = met;
-  // Any way of the joints, whose entries are of a size and in no ratio of small numbers: what is
-  // left of it where A x is taken off moves no loop, and moves every joint that has a freedom.
+  // A step of all joints, its entries of one size and in no ratio of small numbers: without its
+  // part A x it moves no loop, and moves every joint that has a freedom.
   Eigen::VectorXd way(mechanism_.nv());
   for (Eigen::Index i = 0; i < way.size(); ++i)
     way[i] = 1 + std::fmod(std::numbers::phi * static_cast<double>(i + 1), 1);
@@ -105,7 +105,7 @@ bool Continuation::leave_free_joints(bool& all_determined) {
         loops_.columns[c] = false;
         changed = true;
       }
-    // What such a joint moves as well ties nothing down.
+    // Equations that such a joint moves tie nothing down.
     for (const auto& [row, column] : pattern_)
       if (!loops_.columns[static_cast<std::size_t>(column)])
         loops_.rows[static_cast<std::size_t>(row)] = false;

@@ -28,18 +28,18 @@ struct DriveReach {
   Eigen::VectorXd q;       ///< at `until`; of the start where nothing was followed
 };
 
-/// Which groups are followed: those that drives determine, or all.
+/// Groups that are followed: those that drives determine, or all.
 enum class Followed { determined, all };
 
-/// From a closed state on to time `end` [s], or as far as 5000 steps go. Cost: two least-norm
-/// factorisations of Φ_q a step. Without drives or loops: `end`, at once.
+/// Follows drives from a closed state to time `end` [s], or as far as 5000 steps go. Cost: two
+/// least-norm factorisations of Φ_q a step. Without drives or loops: `end`, at once.
 DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::VectorXd& q, double end,
                        Followed followed = Followed::determined);
 
-/// The start of the scene at another time: assembled at t = 0, then led along the drives with the
-/// least change of whatever they leave free, so that it stays on the branch of the start; before
-/// t = 0 assembled at once. Rates are those nearest to the scene's.
-/// @throws SceneError as assemble(), and where a drive cannot go on before t.
+/// The start of the scene at time t: assembled at t = 0, then led along the drives with the least
+/// change of what they leave free, to stay on the branch of the start; before t = 0 assembled at
+/// once. Rates: the nearest to the scene's. @throws SceneError as assemble(), and where a drive
+/// cannot go on before t.
 Assembly assemble_at(const Mechanism& mechanism, double t, Assembled what = Assembled::motion);
 
 }  // namespace momenta

@@ -15,7 +15,7 @@
 
 namespace momenta {
 
-/// The scene with the ends of its loops in that order; nothing where they are as it is written.
+/// The scene with the ends of its loops in that order; nothing where it is written so.
 /// Driven loops stay, and kinds whose ends cannot change places. O(bodies + loops)
 std::optional<Scene> with_ordered_ends(const Scene& scene);
 

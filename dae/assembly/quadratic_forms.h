@@ -8,7 +8,7 @@
 
 namespace momenta {
 
-/// Of n numbers, of length one; the same every time.
+/// Unit vectors of n numbers; the same every time.
 class RandomDirections {
  public:
   Eigen::VectorXd next(Eigen::Index n);
@@ -24,12 +24,12 @@ struct QuadraticForms {
   Eigen::VectorXd at(const Eigen::VectorXd& y) const;
   /// Σ c_i F_i
   Eigen::MatrixXd sum(const Eigen::VectorXd& c) const;
-  /// In the unknowns x, y = basis x.
+  /// The forms in x, y = basis x.
   QuadraticForms in(const Eigen::MatrixXd& basis) const;
 };
 
-/// Orthonormal columns that span the y with F_i(y) = 0 that were found: by Gauss-Newton from some
-/// 4 starts an unknown.
+/// Orthonormal columns that span the y found with F_i(y) = 0, by Gauss-Newton from some 4 starts an
+/// unknown.
 Eigen::MatrixXd common_zeros(const QuadraticForms& forms);
 
 /// c of a Σ c_i F_i that is positive definite, by the rule of perceptrons: each y where it is not

@@ -21,7 +21,7 @@ class ScaledLoops {
   /// Entries of D⁻¹ Φ_q C where gap() was taken last, in the order of pattern(); zero in columns
   /// and rows that are left out.
   std::vector<double> jacobian();
-  /// q after a step δ (nv) from there.
+  /// q after a step δ (nv).
   Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step);
   /// D⁻¹ x (m), zero in rows that are left out.
   Eigen::VectorXd in_units(Eigen::VectorXd x) const;
@@ -34,12 +34,12 @@ class ScaledLoops {
   const LoopUnits& units() const { return units_; }
 
   std::vector<bool> columns,
-      rows;  ///< that are in: all columns, and the rows of positions, until told otherwise
+      rows;  ///< in use; at first all columns and the rows of positions
 
  private:
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
-  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
+  const std::vector<KktPattern::Entry>& pattern_;  ///< pattern of Φ_q
   LoopUnits units_;
 };
 

@@ -16,11 +16,11 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rounding = 3e-6;  // of forms, beside what they are summed from and beside one
-// Rows that depend on others but for δ turn V and ω by δ over the least singular value that counts,
-// and leave as much of a form that is zero.
+constexpr double rounding = 3e-6;  // forms, relative to their terms and to one
+// Rows that depend on others to δ turn V and ω by δ over the least singular value that counts, and
+// leave as much in a zero form.
 constexpr double beside_dependence = 30, too_close = 0.1;
-constexpr double at_rest = 1e-12;  // of Φ, Φ̇ and Φ̈ in units
+constexpr double at_rest = 1e-12;  // Φ, Φ̇ and Φ̈ in units
 constexpr double most_entries = 1e5;
 constexpr Eigen::Index most_free = 60, most_curved = 12;
 
@@ -46,7 +46,7 @@ class SecondOrderForms {
     leave_out_time(a);
     if (idle_.cols() == 0 || free_.cols() == 0 || !keep_curved()) return found;
     QuadraticForms forms = all_forms();
-    // Where no form depends on y all forms are zero.
+    // Null vectors of Σ F² are the y on which no form depends.
     MatrixXd squares = MatrixXd::Zero(free_.cols(), free_.cols());
     for (const MatrixXd& form : forms.all) squares += form * form;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(squares);
@@ -104,7 +104,7 @@ class SecondOrderForms {
     e_.place(t_, q_.data());
     moving_ = !parts.isZero(at_rest) || !rate.isZero(at_rest) || !still_.isZero(at_rest);
     if (!moving_ || idle_.cols() == 0) return;
-    // Φ̈ at u₀ + V y, u₀ what the time asks for: its part without y, and that linear in y.
+    // Φ̈ at u₀ + V y, u₀ the prescribed rates: the part without y, and that linear in y.
     DenseLeastSquares steps;
     steps.compute(a, rank_tolerance);
     const VectorXd start = -steps.solve(VectorXd(rate.cwiseQuotient(loops_.units().equations)));
@@ -118,7 +118,7 @@ class SecondOrderForms {
       idle_ = idle_ * rank_and_idle(seen, least / rank_tolerance).left;
   }
 
-  /// Keeps of the ω combinations whose form is not zero; false: there is none.
+  /// Keeps the combinations of ω whose form is not zero; false: there is none.
   bool keep_curved() {
     RandomDirections random;
     const Eigen::Index f = free_.cols();
@@ -171,7 +171,7 @@ class SecondOrderForms {
     if (rest == 0) return;
     const MatrixXd others = zeros.cols() == 0 ? MatrixXd::Identity(n, n)
                                               : MatrixXd(orthogonal_factor(zeros).rightCols(rest));
-    // Of a form that is nowhere negative zeros are minima: F y = 0 there.
+    // Zeros of a form that is nowhere negative are minima: F y = 0 there.
     MatrixXd combinations = MatrixXd::Identity(idle_.cols(), idle_.cols());
     if (zeros.cols() > 0) {
       MatrixXd slopes(idle_.cols(), n * zeros.cols());
@@ -204,8 +204,8 @@ class SecondOrderForms {
   const VectorXd& q_;
   MatrixXd free_, idle_;   ///< V and the ω, columns, in units
   VectorXd still_;         ///< Φ̈ without rates, in units
-  bool moving_ = false;    ///< with time
-  double least_form_ = 0;  ///< that is not zero but for rounding and rows that nearly depend
+  bool moving_ = false;    ///< loops move with time
+  double least_form_ = 0;  ///< least form above rounding and nearly dependent rows
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// What loops allow to second order, at a pose where their equations lose rank.
+// Motions that loops allow to second order, at a pose where their equations lose rank.
 //
 // To first order rates u = V y are free, Φ_q V = 0. Let ω be a force of the loops that moves
 // nothing, ωᵀΦ_q = 0. Along a motion that begins with s V y, or with a higher power of s in place
@@ -27,15 +27,15 @@ namespace momenta {
 
 struct Rigidity {
   Eigen::VectorXd stuck;  ///< rates (nv) free to first order that no motion has; empty: none found
-  bool certain = true;    ///< a form tells; false: only that no such motion was found
-  bool all = false;       ///< whether no y was found that the forms allow, but where all are zero
+  bool certain = true;    ///< a form proves it; false: no such motion was found
+  bool all = false;       ///< no y with F_i(y) = 0 was found but where all forms are zero
   Eigen::Index flat = 0;  ///< independent y where all forms are zero
-  int row = 0;            ///< of Φ that opens most along them
+  int row = 0;            ///< row of Φ that opens most along them
 };
 
-/// At (t, q) where the equations of positions have rank `rank` in all rates, less than their
-/// number. Nothing is found of more than 10⁵ entries of Φ_q, or where more than 60 rates are free
-/// or the forms depend on more than 12 of them. O((n + m)³)
+/// Rigidity at (t, q), where the equations of positions have rank `rank` in all rates, less than
+/// their number. Nothing is found beyond 10⁵ entries of Φ_q, 60 free rates, or 12 of them that the
+/// forms depend on. O((n + m)³)
 Rigidity second_order(ScaledLoops& loops, double t, const Eigen::VectorXd& q, int rank);
 
 /// "at A.u = 1, B.u = -2 …", what is stuck and by which loop.

@@ -9,9 +9,9 @@
 namespace momenta {
 
 /// "drive of 'O' cannot go on at t = 0.1152 s: loop 'B' does not close behind it (dead point of 'b'
-/// and 'c')". `open`: what stays open behind t [s], Φ by row (m) in comparable units. Drives named
-/// are those on the way around the loop that stays open most, or its own; bodies those on that way
-/// that no driven joint holds.
+/// and 'c')". `open`: Φ that stays open behind t [s], by row (m) in comparable units. Named are
+/// drives on the way around the loop that stays open most, or its own, and bodies on it that no
+/// driven joint holds.
 std::string stalled_drive(const Mechanism& mechanism, double t, const Eigen::VectorXd& open);
 
 }  // namespace momenta

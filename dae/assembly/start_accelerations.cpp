@@ -17,7 +17,7 @@ namespace {
       mechanism.no_inertia(rate, s.t, s.q.data()));
 }
 
-/// With forces of friction `tau` (nv), or null.
+/// Fills udot and lambda; `tau` (nv): forces of friction, or null.
 void solve_for_accelerations(const Mechanism& mechanism, Evaluation<double>& e, Start& s,
                              const double* tau) {
   const auto no_inertia = [&](int rate) { refuse_without_inertia(mechanism, e, s, rate); };

@@ -1,6 +1,6 @@
 #pragma once
-// What of a start follows from its positions and rates: accelerations u̇ and multipliers λ, by the
-// equations of motion with the loops' accelerations zero, Φ̈ = 0, friction in bearings counted.
+// Accelerations u̇ and multipliers λ of a start from its positions and rates, by the equations of
+// motion with Φ̈ = 0, friction in bearings counted.
 
 #include <momenta/dae/form/form.h>
 

@@ -11,17 +11,17 @@
 namespace momenta {
 namespace {
 
-// Of axes in one a_i · b_i = 1, of turned ones 0 or −1.
+// a_i · b_i is 1 for axes in one, 0 or −1 for turned ones.
 constexpr double in_one = 0.5;
-constexpr double first_turning = 0.25, least_turning = 1.0 / 128;  // of the turn, a step
+constexpr double first_turning = 0.25, least_turning = 1.0 / 128;  // part of the turn in a step
 constexpr double longest_turning = 1;                              // [rad or lengths] of any joint
 constexpr int most_turnings = 200;
 constexpr double half_turn_within = 1e-6;  // [rad]
-constexpr double level = 1e-6;             // apart, components that count as equal
-constexpr int most_ways_round = 8;         // which of the loops turn which way round
+constexpr double level = 1e-6;             // between components that count as equal
+constexpr int most_ways_round = 8;         // choices of the loops' ways round
 
-/// Which axes 1, 2, 3 its rows of axes hold in one: three hold all, two the third; one alone, of a
-/// universal joint, holds none.
+/// First axis that rows of axes hold in one: three rows hold all, two the third; the one of a
+/// universal joint holds none.
 int first_axis_held(const LoopChoice& choice) {
   return choice.axes.size() == 3 ? 0 : choice.axes.size() == 2 ? 2 : 3;
 }
@@ -39,7 +39,7 @@ Eigen::Matrix3d prescribed(const std::vector<LoopChoice::Along>& turns, double t
   return all;
 }
 
-/// A line's direction: of its components the first that is among the largest is positive.
+/// Direction of a line, the first of its largest components positive.
 Eigen::Vector3d with_sense(const Eigen::Vector3d& way) {
   const double largest = way.cwiseAbs().maxCoeff();
   int k = 0;
@@ -51,9 +51,9 @@ bool is_half_turn(const TurnedLoop& loop) {
   return loop.angle > std::numbers::pi - half_turn_within;
 }
 
-/// At half a turn both ways round are as short, and a hinge may turn about any axis across it: what
-/// rounding or the loop frame would decide is decided in the axes of the ground, in which the loop
-/// frame is `frame`.
+/// At half a turn both ways round are as short, and a hinge may turn about any axis across it: the
+/// axes of the ground decide, not rounding or the loop frame. `frame`: the loop frame in axes of
+/// the ground.
 void decide_half_turn(TurnedLoop& loop, const Eigen::Matrix3d& frame, bool of_hinge,
                       const Eigen::Vector3d& hinge) {
   if (!is_half_turn(loop)) return;
@@ -66,7 +66,7 @@ void decide_half_turn(TurnedLoop& loop, const Eigen::Matrix3d& frame, bool of_hi
   }
 }
 
-/// Whether axes of the loop, in the loop frame, are not in one, and then the turn between them.
+/// The turn between axes of the loop, in the loop frame; nothing where they are in one.
 std::optional<TurnedLoop> turn_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b,
                                        int first) {
   bool turned = false;
@@ -111,7 +111,7 @@ class LeadingBack {
 
   int iterations() const { return iterations_; }
 
-  /// Whether a way is one of smaller number, as there are few loops and one axis of each.
+  /// Whether `way` repeats one of smaller number, as there are few loops and one axis of each.
   bool is_another(int way) const {
     const bool one_axis = std::all_of(turned_.begin(), turned_.end(), [](const TurnedLoop& loop) {
       return loop.axis == loop.other;

@@ -31,25 +31,24 @@
 
 namespace momenta {
 
-/// One such loop, and the turn G.
+/// A turned loop and its turn G.
 struct TurnedLoop {
-  std::size_t loop = 0;         ///< its place among the scene's
-  Eigen::Vector3d axis, other;  ///< of G in the loop frame; of a hinge another one as well
-  double angle = 0;             ///< of G [rad], above 0, at most π
+  std::size_t loop = 0;         ///< index in the scene
+  Eigen::Vector3d axis, other;  ///< axis of G in the loop frame; of a hinge another one too
+  double angle = 0;             ///< angle of G [rad], above 0, at most π
   Eigen::Vector3d driven = Eigen::Vector3d::Zero();  ///< displacement by drives, loop frame [m]
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();   ///< D in parent axes [m]
 };
 
-/// Those that the pose q (nq) at time t [s] closes turned, drives counted. @pre Φ(q, t) = 0.
+/// Loops that the pose q (nq) at time t [s] closes turned, drives counted. @pre Φ(q, t) = 0.
 /// O(bodies); nothing where no loop has rows of axes.
 std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
                                      const Eigen::VectorXd& q);
 
-/// A pose that closes them with all axes in one, q led there as said above: the first that is
-/// reached, the shorter ways round before the longer ones; of half turns the nearest. `columns`
-/// (nv): rates of joints that may move. `iterations`: those of Newton's method are added. None
-/// where every way ends: there may be no such pose. Cost: some 10 to 100 mechanisms made and as
-/// many solutions of Newton's method.
+/// A pose that closes the loops with all axes in one, led there from q: the first reached, shorter
+/// ways round first; of half turns the nearest. `columns` (nv): rates of joints that may move. Adds
+/// Newton's `iterations`. None where every way ends: there may be no such pose. Cost: some 10 to
+/// 100 mechanisms made and as many solutions of Newton's method.
 std::optional<Eigen::VectorXd> led_back(const Mechanism& mechanism, double t,
                                         const Eigen::VectorXd& q,
                                         const std::vector<TurnedLoop>& turned,

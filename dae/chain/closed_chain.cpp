@@ -105,7 +105,7 @@ bool ClosedChain::correct(double t, VectorRef q, VectorRef u) {
     in.e->place(t, q.data());
     in.e->positions(phi.data());
     const double open = phi.cwiseAbs().maxCoeff();
-    // Quadratic until rounding is all that is left.
+    // Convergence is quadratic until only rounding is left.
     if (step > 0 && open >= 0.5 * last) break;
     if (step == most_steps || !std::isfinite(open)) {
       in.failure = "the loops do not close from these positions";

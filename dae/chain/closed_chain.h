@@ -32,7 +32,6 @@
 
 namespace momenta {
 
-/// A mechanism with closed loops, and its dynamics at one state.
 class ClosedChain {
  public:
   /// @throws SceneError
@@ -40,7 +39,6 @@ class ClosedChain {
   ~ClosedChain();
   /// Movable. A moved-from object must not be used.
   ClosedChain(ClosedChain&&) noexcept;
-  /// As the move constructor.
   ClosedChain& operator=(ClosedChain&&) noexcept;
 
   /// The mechanism, which forms, runs and studies take. It lives as long as this object, also when
@@ -62,11 +60,10 @@ class ClosedChain {
   bool rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, const ConstVectorRef& tau,
              VectorRef qdot, VectorRef pdot, double leak = 0);
   /// The same for many states at one time: q (nq × states), p (nv × states), one column per state.
-  /// The states are side by side in vector registers where the sweeps carry the loops, and in space
-  /// only where no forces act between points of bodies; elsewhere one by one. `threads`: how many
-  /// threads share the states, each with its own sweeps. False where a state has no rates: its
-  /// columns are NaN, the columns of all other states are right. Allocates. @throws
-  /// std::invalid_argument for fewer than one thread
+  /// States are side by side in vector registers where the sweeps carry the loops (in space without
+  /// forces between points of bodies), else one by one. `threads` share the states, each with its
+  /// own sweeps. False where a state has no rates: its columns are NaN, those of all others are
+  /// right. Allocates. @throws std::invalid_argument for fewer than one thread
   bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
                        StatesRef pdot, double leak = 0, int threads = 1);
   /// The same with τ (nv × states).
@@ -92,10 +89,9 @@ class ClosedChain {
   bool accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
                                const ConstStatesRef& tau, StatesRef udot, StatesRef lambda,
                                int threads = 1);
-  /// Inverse dynamics: the joint forces τ (nv) that give the accelerations u̇ at (q, u) when the
-  /// loops have the multipliers λ: τ = M u̇ + bias − Q + Φ_qᵀ λ. O(bodies + loops). The caller
-  /// chooses how joints and loops share the load: τ + Φ_qᵀ μ with λ + μ is the same motion for any
-  /// μ.
+  /// Inverse dynamics: joint forces τ (nv) that give accelerations u̇ at (q, u) when the loops have
+  /// the multipliers λ: τ = M u̇ + bias − Q + Φ_qᵀ λ. O(bodies + loops). The caller chooses how
+  /// joints and loops share the load: τ + Φ_qᵀ μ with λ + μ is the same motion.
   void joint_forces(double t, const ConstVectorRef& q, const ConstVectorRef& u,
                     const ConstVectorRef& udot, const ConstVectorRef& lambda, VectorRef tau);
 
@@ -103,16 +99,16 @@ class ClosedChain {
   /// equation.
   void constraints(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef phi,
                    VectorRef phidot);
-  /// Projects q and u onto the constraints. q goes to Φ = 0 by Newton steps Φ_q δ = −Φ of least
-  /// norm in the mass metric; u becomes the nearest rates in that metric with Φ_q u + Φ_t = 0.
-  /// False where q is too far from the constraints for the steps to converge, or as for rates().
+  /// Projects q and u onto the constraints: q to Φ = 0 by Newton steps Φ_q δ = −Φ of least norm in
+  /// the mass metric, u to the nearest rates in that metric with Φ_q u + Φ_t = 0. False where q is
+  /// too far for the steps to converge, or as for rates().
   bool correct(double t, VectorRef q, VectorRef u);
   /// Φ_q, m × nv, dense.
   Eigen::MatrixXd jacobian(double t, const ConstVectorRef& q);
   /// M, nv × nv, dense.
   Eigen::MatrixXd mass_matrix(double t, const ConstVectorRef& q);
 
-  /// T, V and H = p·u − T + V [J], with p of momenta(): M u plus the part of prescribed motion.
+  /// T, V and H = p·u − T + V [J], with p of momenta().
   Energies energies(double t, const ConstVectorRef& q, const ConstVectorRef& u);
   /// The wrenches that joints and loops transmit at (t, q, u), with u̇ and λ of (3). @throws
   /// std::runtime_error with failure() where (3) has no solution

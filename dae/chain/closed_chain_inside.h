@@ -1,5 +1,5 @@
 #pragma once
-// What a ClosedChain consists of, for the files that implement it.
+// Parts of a ClosedChain, for the files that implement it.
 
 #include <momenta/core/arguments.h>
 #include <momenta/dae/chain/closed_chain.h>
@@ -26,7 +26,7 @@ struct ClosedChain::Inside {
     }
   }
 
-  /// The solver's verdict, in words.
+  /// Notes why the solver failed; returns `ok`.
   bool noted(bool ok, double t, const double* q) {
     if (!ok)
       failure = tree ? tree->failure() : mechanism.no_inertia(solver->singular_joint(), t, q);
@@ -46,7 +46,7 @@ struct ClosedChain::Inside {
     e->place(t, q.data());
     e->move(rates.data());
   }
-  /// q̇ where bodies are placed by the last call.
+  /// q̇ from `rates`.
   void rates_of_coordinates(double t, const double* q, const double* rates, double* qdot) {
     if (!mechanism.plan().quasi_velocities) {
       std::copy_n(rates, mechanism.nv(), qdot);
@@ -57,7 +57,7 @@ struct ClosedChain::Inside {
   }
 
   /// Many states in the lanes of the sweeps' registers, on momenta or on accelerations. False where
-  /// the sweeps do not carry the loops or the forces, or some state has no result or asks for the
+  /// the sweeps do not carry the loops or the forces, or some state has no result or needs the
   /// matrix.
   bool side_by_side(double t, const LoopedStates& all, bool of_momenta, double leak, int threads);
   template <class Act>
@@ -71,14 +71,14 @@ struct ClosedChain::Inside {
 
   Mechanism mechanism;
   std::unique_ptr<Evaluation<double>> e;
-  std::unique_ptr<LoopSolver> solver;                  ///< with loops
-  std::unique_ptr<OpenChain> tree;                     ///< without
+  std::unique_ptr<LoopSolver> solver;                  ///< null without loops
+  std::unique_ptr<OpenChain> tree;                     ///< null with loops
   Eigen::VectorXd u, sigma;                            // scratch
   std::vector<std::unique_ptr<LoopedSweeps>> batches;  ///< one for each thread
   std::string failure;
 };
 
-/// q, u or p, and what else a call on one state takes or gives.
+/// Expects arguments of a call on one state to have their sizes.
 inline void expect_sizes(const char* call,
                          std::initializer_list<std::pair<const char*, Eigen::Index>> found,
                          std::initializer_list<int> expected) {

@@ -49,7 +49,7 @@ bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool o
   return done;
 }
 
-/// State by state: calls act(i) and fills with NaN the columns of those of which it is false.
+/// Calls act(i) state by state; where it is false, fills the columns of the state with NaN.
 template <class Act>
 bool ClosedChain::Inside::one_by_one(Act&& act, StatesRef a, StatesRef b) {
   std::string first;

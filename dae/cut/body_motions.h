@@ -15,11 +15,11 @@ namespace momenta {
 class BodyMotions {
  public:
   explicit BodyMotions(const Mechanism& mechanism) : BodyMotions(mechanism, nullptr) {}
-  /// At a start.
+  /// Takes the state of `start`.
   BodyMotions(const Mechanism& mechanism, const Start& start) : BodyMotions(mechanism) {
     take(start.t, start.q, start.u);
   }
-  /// Of some bodies alone; "ground" may be among them.
+  /// Motions of the `wanted` bodies alone; "ground" may be among them.
   BodyMotions(const Mechanism& mechanism, const std::set<std::string>& wanted)
       : BodyMotions(mechanism, &wanted) {}
 
@@ -31,7 +31,7 @@ class BodyMotions {
  private:
   struct Wanted {
     BodyMotion* motion;
-    int body;  ///< of the tree
+    int body;  ///< in the tree
   };
   BodyMotions(const Mechanism& mechanism, const std::set<std::string>* wanted);
 

@@ -73,11 +73,11 @@ class OpenLoops {
   std::vector<std::vector<std::size_t>> joints_, leaving_;
 };
 
-/// The joints below `body` in the order wanted.
+/// The joints below `body` in their new order.
 std::vector<std::size_t> ordered(const OpenLoops& loops, std::size_t body) {
   const std::vector<std::size_t>& joints = loops.joints(body);
   TieGraph graph(joints.size());
-  std::unordered_map<std::size_t, std::size_t> first_of, left;  // by loop: a child, how many come
+  std::unordered_map<std::size_t, std::size_t> first_of, left;  // per loop: first child, those left
   const auto leaving = [&](std::size_t i) -> auto& {
     return loops.leaving(loops.child(joints[i]));
   };

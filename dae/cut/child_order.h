@@ -15,7 +15,7 @@
 
 namespace momenta {
 
-/// The scene with its joints so ordered below bodies; nothing where they are. Those on the ground
+/// The scene with joints below bodies in this order; nothing where they are. Joints on the ground
 /// stay (root_order.h). O(length of all loops + bodies log)
 std::optional<Scene> with_children_ordered(const Scene& scene);
 

@@ -131,7 +131,7 @@ std::int64_t Cycles::gain(int e, int f) {
 
 void Cycles::exchange(int e, int f) {
   work_ += gain(e, f);
-  // parents: what lies between an end of e and f hangs on the other end from now on
+  // parents: bodies between an end of e and f come to hang on the other end
   std::vector<int> sorted = cycle_[at(e)];
   std::sort(sorted.begin(), sorted.end());
   const auto hangs_below_f = [&](int v) {

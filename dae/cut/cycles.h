@@ -1,5 +1,5 @@
 #pragma once
-// Which edges of a mechanism's graph are joints of its tree and which are loops. Vertices are the
+// Choice of the edges of a mechanism's graph that are joints of its tree. Vertices are the
 // bodies and the ground, 0; every loop e has one cycle, e and the way through the tree between its
 // ends, and is open in the front of a joint j exactly when j is on that cycle. With k_j the number
 // of equations open at j, what the sweeps pay for loops is
@@ -24,9 +24,9 @@ namespace momenta {
 
 struct CutEdge {
   int a = 0, b = 0;  ///< vertices
-  int rows = 0;      ///< equations that it is as a loop
+  int rows = 0;      ///< its equations as a loop
   bool in_tree = false;
-  bool fixed = false;  ///< stays what it is
+  bool fixed = false;  ///< stays a joint or a loop
   bool operator==(const CutEdge&) const = default;
 };
 
@@ -39,13 +39,13 @@ class Cycles {
   std::int64_t work() const { return work_; }  ///< J
   std::int64_t depth() const;                  ///< Σ over the bodies of joints to the ground
 
-  /// What J changes by when loop e and joint f change places. O(length of the cycle · loops on it).
+  /// Change of J when loop e and joint f change places. O(length of the cycle · loops on it).
   /// @pre f is on the cycle of e
   std::int64_t gain(int e, int f);
   void exchange(int e, int f);
 
-  /// Exchanges as long as J falls, the best of each loop in turn; `effort` bounds the sum of what
-  /// gain() looks at. Returns what of it is left, 0 where the descent was cut short.
+  /// Exchanges as long as J falls, the best of each loop in turn; `effort` bounds what gain() looks
+  /// at. Returns the effort left, 0 where the descent was cut short.
   std::int64_t descend(std::int64_t effort);
   std::int64_t balance(std::int64_t effort);
 
@@ -64,16 +64,16 @@ class Cycles {
   std::vector<int> scratch_;
 };
 
-/// Σ over the loops of joints on their cycles; `most` and one where it is more. O(vertices + most).
+/// Σ over the loops of joints on their cycles, at most `most` + 1. O(vertices + most).
 std::int64_t length_of_cycles(int vertices, const std::vector<CutEdge>& edges, std::int64_t most);
 
-/// The same edges with another tree to start from: fixed joints, then of the others those that
-/// would be the most equations, the nearest to the ground first.
+/// The edges with a shallow tree: fixed joints, then the edges of most equations, the nearest to
+/// the ground first.
 std::vector<CutEdge> shallow_tree(int vertices, const std::vector<CutEdge>& edges);
 
-/// Likewise: from each vertex on to the one beside it that most edges tie to the way there, back
-/// where there is none. In a band, such as a ladder, what is tied together then lies together, and
-/// cycles are short where those of a shallow tree are as long as the band.
+/// The edges with a deep tree: from each vertex on to the neighbour that most edges tie to the way
+/// there, back where there is none. In a band, such as a ladder, cycles are then short where those
+/// of a shallow tree are as long as the band.
 std::vector<CutEdge> deep_tree(int vertices, const std::vector<CutEdge>& edges);
 
 }  // namespace momenta

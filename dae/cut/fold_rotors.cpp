@@ -33,7 +33,6 @@ bool symmetric(const JointSpec& joint, const BodySpec& body) {
   return most <= rounding * I.trace();
 }
 
-/// The axis of the joint in axes of its parent.
 Vector3d axis_in_parent(const JointSpec& joint) {
   return joint.rotation.normalized() * joint.axis.normalized();
 }
@@ -48,7 +47,7 @@ bool turns_about_axis(const JointSpec& joint, int coordinate) {
 /// A coupler by which one joint follows another, q = ratio q' + offset, and K of (*).
 struct Gear {
   std::size_t coupler = 0, leader = 0;
-  int coordinate = 0;  ///< of the leader
+  int coordinate = 0;  ///< coordinate of the leader
   double ratio = 0, offset = 0;
   double shifted = 0;         ///< K [kg m²]
   std::string to = "ground";  ///< the other body of the leader
@@ -98,7 +97,7 @@ class RotorFold {
       if (!gear || !can_shift(joint, *gear) || !can_take(gear->leader, joint, gear->ratio))
         continue;
       take(joint, *gear);
-      pending.push_back(gear->leader);  // in one coupler less, it may be a rotor's itself
+      pending.push_back(gear->leader);  // in one coupler less, it may be a rotor's joint itself
     }
     drop_what_went();
     return std::move(result_);
@@ -149,7 +148,7 @@ class RotorFold {
     return gear;
   }
 
-  /// Finds K; false where the rotor's carrier turns and what (*) asks for is not there.
+  /// Finds K; false where the rotor's carrier turns and (*) does not hold.
   bool can_shift(std::size_t i, Gear& gear) {
     const JointSpec &j = joint(i), &leader = joint(gear.leader);
     const BodySpec& rotor = body(j.child);
@@ -167,7 +166,7 @@ class RotorFold {
     if (gear.axis.cross(other).norm() > parallel) return false;
     const double sense = (gear.axis.dot(other) > 0 ? 1 : -1) * (outer ? -1 : 1);
     gear.shifted = sense * gear.ratio * axial(j, rotor);
-    // the rate's own share, and what remains of the inertia of the body that gives
+    // I_r, then the inertia left to the body that gives
     if (sense * gear.ratio > 0 && sense * gear.ratio < 1) return false;
     if (gear.shifted > 0)
       return is_inertia(carrier_of(i).inertia - moment(gear.shifted, gear.axis));
@@ -254,7 +253,7 @@ class RotorFold {
     body.any_inertia = true;
   }
 
-  /// What followed a joint that follows by `gear` follows its leader.
+  /// Makes f, which follows a joint that follows by `gear`, follow that joint's leader.
   static void follow(FollowingJoint& f, const JointSpec& leader, const Gear& gear) {
     f.leader = leader.name;
     f.coordinate = gear.coordinate;
@@ -277,17 +276,17 @@ class RotorFold {
     std::erase_if(s.loops, went);
     std::erase_if(s.bodies, [&](const BodySpec& b) { return gone_bodies_.contains(b.name); });
     std::erase_if(s.markers, [&](const MarkerSpec& m) { return gone_bodies_.contains(m.body); });
-    s.visuals.clear();  // what runs integrate is not drawn
+    s.visuals.clear();  // integrated scenes are not drawn
     std::erase_if(s.held, [&](const std::string& name) { return gone_.contains(name); });
   }
 
   FoldedScene result_;
   std::unordered_map<std::string, std::size_t> bodies_, joints_, inward_;  // places, by names
   std::unordered_map<std::string, bool> turns_;
-  std::vector<std::vector<std::size_t>> couplers_, torques_;  // of each joint
+  std::vector<std::vector<std::size_t>> couplers_, torques_;  // by joint
   std::set<std::string> tied_;    // bodies with children, loops, springs or wrenches
   std::set<std::string> driven_;  // joints and loops
-  std::set<std::string> sprung_;  // joints that coordinate springs and formulas look at
+  std::set<std::string> sprung_;  // joints that coordinate springs and formulas name
   std::set<std::string> gone_;    // joints and loops
   std::set<std::string> gone_bodies_, leaders_;
 };

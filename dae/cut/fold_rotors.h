@@ -20,7 +20,7 @@
 // its axis is −a. Asked for is that I_r ≥ 0 (no ratio between 0 and 1) and that the moments of the
 // body that gives stay positive.
 //
-// Of the joint of R go to j, if that has one coordinate,
+// The joint of R hands on to j, if that has one coordinate,
 //
 //   damping d ρ²,  torque τ ρ,  stiffness k ρ² at rest (q_rest − offset / r_R) / ρ
 //

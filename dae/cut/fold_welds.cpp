@@ -13,7 +13,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// Where a body is in its carrier. A quaternion, so that joints without a turn keep their digits.
+/// A body's place in its carrier. A quaternion, so that joints without a turn keep their digits.
 struct Place {
   std::string carrier;
   Quaterniond turn = Quaterniond::Identity();
@@ -61,7 +61,7 @@ class Places {
   std::unordered_map<std::string, Place> places_;
 };
 
-/// What drives prescribe of loops, by their names.
+/// Loops that drives prescribe, by name.
 struct DrivenLoops {
   std::set<std::string> any, origins;
   explicit DrivenLoops(const Scene& scene) {
@@ -95,8 +95,8 @@ bool has_ends(const ForceSpec& f) {
   return f.kind == "spring-damper" || f.kind == "bushing";
 }
 
-/// Bodies whose own weld must stay for formulas: those of springs whose length they name, which one
-/// body would have both ends of, and those in whose axes components are.
+/// Bodies whose own weld must stay for formulas: an end of a spring whose length they name and
+/// whose ends would be on one body, and bodies in whose axes components are.
 std::set<std::string> held_by_formulas(const Scene& scene, const NamedInFormulas& named,
                                        const Places& places) {
   std::set<std::string> bodies;
@@ -135,7 +135,7 @@ LoopSpec folded(LoopSpec loop, const Places& places) {
   return loop;
 }
 
-/// Carriers with what they carry.
+/// Merges bodies into their carriers.
 void merge_bodies(const Scene& given, const Places& places, Scene& scene) {
   std::erase_if(scene.bodies, [&](const BodySpec& body) { return !places.carries(body.name); });
   std::unordered_map<std::string, BodySpec*> carriers;
@@ -216,7 +216,7 @@ FoldedScene fold_welds(const Scene& given) {
     marker.body = place.carrier;
     marker.point = place.point(marker.point);
   }
-  scene.visuals.clear();  // what runs integrate is not drawn
+  scene.visuals.clear();  // integrated scenes are not drawn
   std::erase_if(scene.held, [&](const std::string& joint) {
     return std::any_of(weld_of.begin(), weld_of.end(), [&](const auto& weld) {
       return weld.second == joint && !kept.contains(joint);

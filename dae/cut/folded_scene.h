@@ -14,7 +14,7 @@ namespace momenta {
 struct CarriedBody {
   std::string body;
   std::string carrier;     ///< a body of the folded scene, "ground", or a rotor of `following`
-  Eigen::Isometry3d pose;  ///< of the body's frame in the carrier's
+  Eigen::Isometry3d pose;  ///< the body's frame in the carrier's
 };
 
 /// A revolute joint whose angle follows from a coordinate of another: q = ratio q' + offset.
@@ -22,10 +22,10 @@ struct FollowingJoint {
   std::string joint;
   std::string body;     ///< the rotor it carried
   std::string leader;   ///< a joint of the folded scene
-  int coordinate = 0;   ///< of the leader
+  int coordinate = 0;   ///< coordinate of the leader
   double ratio = 0;     ///< [1, or rad/m]
   double offset = 0;    ///< [rad]
-  double inertia = 0;   ///< of the body, now in the leader's rotor_inertia [kg m² or kg]
+  double inertia = 0;   ///< the body's part of the leader's rotor_inertia [kg m² or kg]
   bool slides = false;  ///< the leader's coordinate is a displacement
 };
 

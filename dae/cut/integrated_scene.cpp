@@ -8,8 +8,8 @@
 namespace momenta {
 namespace {
 
-/// Whether an evaluation is worth other coordinates: a tenth less, or swept at all. Another order
-/// of the same is worth anything.
+/// Whether cuts are worth other coordinates: a tenth less work, or swept at all. Another order of
+/// the same coordinates need only cost less.
 bool pays(const Mechanism& written, const Recut& cuts) {
   return written.kkt() != KktChoice::sweeps || 10 * cuts.after.sweeps < 9 * cuts.before.sweeps ||
          (cuts.cut.empty() && cuts.after.sweeps < cuts.before.sweeps);
@@ -50,7 +50,7 @@ IntegratedScene::IntegratedScene(const Mechanism& written, const Start& start, c
     cuts_ = std::move(found);
     if (!folded_.folds()) folded_.scene = written.scene();
   } catch (const SceneError&) {
-    return;  // what cannot start so is integrated as it is written
+    return;  // a scene that cannot start so is integrated as written
   }
 }
 
@@ -70,7 +70,7 @@ bool IntegratedScene::take(std::shared_ptr<const Mechanism> mechanism) {
   // Where equations contradict each other the pose is that of least squares, another one.
   constexpr double same_pose = 1e-9;
   if (assembly.moved > same_pose) return false;
-  // Loops none of whose equations are independent leave every method rounding alone to divide by.
+  // Loops without an independent equation leave methods rounding alone to divide by.
   if (mechanism->m() > 0 && assembly.rank == 0) return false;
   start_ = std::move(assembly.start);
   mechanism_ = std::move(mechanism);

@@ -1,13 +1,13 @@
 #pragma once
-// What runs integrate in place of a mechanism as it is written: the same mechanism without bodies
-// that have no coordinate of their own (fold_welds.h, fold_rotors.h), and with joints cut where
-// that is less work (recut.h). What is reported is of the scene as written (written_motion.h).
+// The mechanism that runs integrate in place of the one written: the same without bodies that have
+// no coordinate of their own (fold_welds.h, fold_rotors.h), and with joints cut where that is less
+// work (recut.h). Reports are of the scene as written (written_motion.h).
 //
 // An evaluation by sweeps costs about c₀ a body and c₁ for each of the squared numbers of equations
 // that are open at it, J in all (cycles.h), with c₀ / c₁ about 8 in the plane and 30 in space.
-// Of the cuts that recut() proposes those are taken that are a tenth of that cheaper, or where the
-// sweeps carry loops that they cannot carry as written, or where the tree becomes so much shallower
-// at next to the same work that rounding adds up less.
+// Cuts of recut() are taken that are a tenth cheaper, or with which the sweeps carry loops that
+// they cannot carry as written, or the tree becomes so much shallower at next to the same work that
+// rounding adds up less.
 
 #include <momenta/dae/cut/folded_scene.h>
 #include <momenta/dae/cut/recut.h>
@@ -17,23 +17,22 @@
 
 namespace momenta {
 
-/// The mechanism that a run integrates, and what it differs in from the one written.
+/// The mechanism that a run integrates, and how it differs from the one written.
 class IntegratedScene {
  public:
   /// Folds and chooses the cuts, unless the mechanism's options keep those of the scene or ask for
-  /// an assembled matrix. `written` and `start` must outlive it. `known`: recut() of these; null:
-  /// not known. Cost: recut(); an assembly for each of the two steps that is taken.
+  /// an assembled matrix. `written` and `start` must outlive it. `known`: recut() of these, or
+  /// null. Cost: recut(); an assembly for each step taken.
   IntegratedScene(const Mechanism& written, const Start& start, const Recut* known = nullptr);
 
-  /// What is integrated. It lives as long as this object, or is the one written.
+  /// The integrated mechanism; it lives as long as this object, or is the one written.
   const Mechanism& mechanism() const { return mechanism_ ? *mechanism_ : written_; }
-  /// Where it starts.
   const Start& start() const { return mechanism_ ? start_ : written_start_; }
-  /// Whether it is another scene than the one written.
+  /// Whether the scene differs from the one written.
   bool anew() const { return mechanism_ != nullptr; }
-  /// What was folded; where nothing was, its scene is the one written. @pre anew()
+  /// The folded scene, or the one written where nothing was folded. @pre anew()
   const FoldedScene& folded() const { return folded_; }
-  /// Which joints of it are cut in place of others; gains() is false where none are.
+  /// The cuts chosen; gains() is false where there are none.
   const Recut& cuts() const { return cuts_; }
   /// "welded into 'B': 'C'; cut at 'J3', with 'end' in the tree"; empty where it is the scene as
   /// written.
@@ -51,15 +50,14 @@ class IntegratedScene {
   Start start_;
 };
 
-/// Whether joints of a scene have rigid stops (JointSpec::restitution): those hold coordinates as
-/// they are written, so that a run integrates the scene as written.
+/// Whether joints of a scene have rigid stops (JointSpec::restitution): these hold coordinates as
+/// written, so that a run integrates the scene as written.
 bool has_rigid_stops(const Scene& scene);
 
 /// The scene that runs integrate, for programs with integrators of their own: ClosedChain and
-/// OpenChain take every scene as it is written, whatever its cuts cost. The same motion; joints
-/// keep their names, those that stay joints their coordinates, which joints and loops stand in each
-/// other's place its remarks tell. It starts where the given scene starts, loops closed; the given
-/// scene where no other is less work.
+/// OpenChain take every scene as written. The same motion from the same start, loops closed; joints
+/// keep their names, those that stay joints their coordinates; remarks tell which joints and loops
+/// changed places. The given scene where no other is less work.
 /// @throws SceneError as Mechanism and assemble(). Cost: as IntegratedScene
 Scene integrated_scene(const Scene& scene);
 

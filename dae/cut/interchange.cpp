@@ -174,7 +174,7 @@ std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start)
 }
 
 bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyMotions& bodies) {
-  if (joint.bearing && joint.bearing->length > 0) return false;  // they lie on the child
+  if (joint.bearing && joint.bearing->length > 0) return false;  // bearings lie on the child
   if (joint.kind == JointKind::user) return false;               // its formula is that of the child
   if (!keeps_coordinates(joint.kind)) {
     if (said.of_coordinates.contains(joint.name)) return false;

@@ -8,8 +8,7 @@
 
 namespace momenta {
 
-/// `first`, with the mass of `second` on it. Its shape, which would be drawn about another centre,
-/// goes if there is any.
+/// `first` with the mass of `second`; its shape, which would be drawn about another centre, goes.
 BodySpec merged_body(BodySpec first, const BodySpec& second, const Eigen::Quaterniond& turn,
                      const Eigen::Vector3d& origin);
 

@@ -45,7 +45,7 @@ class SceneGraph {
   }
   int vertices() const { return static_cast<int>(vertex_.size()); }
   int vertex(const std::string& body) const { return vertex_.at(body); }
-  /// Edge of a loop of the scene, −1 of a coupler.
+  /// Edge of a loop of the scene; −1: it ties no two bodies.
   int loop(std::size_t i) const { return loop_at_[i]; }
 
   std::vector<CutEdge> edges;
@@ -63,8 +63,8 @@ class SceneGraph {
 
 constexpr int none = -1, no_way = -2;
 
-/// The scene with the tree of `edges`. Returns `none`, or the edge of a loop that is no joint as
-/// its bodies stand, or `no_way` where a joint cannot be turned as that needs.
+/// Sets `result` to the scene with the tree of `edges`. Returns `none`, or the edge of a loop that
+/// is no joint as its bodies stand, or `no_way` where a joint cannot be turned round.
 int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& graph,
             const std::vector<CutEdge>& edges, const Sayings& said, const BodyMotions& bodies,
             Recut& result) {
@@ -72,7 +72,7 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
   const double length = length_of(given);
   Scene& scene = result.scene;
   const std::vector<JointSpec> joints = joints_at(mechanism, start);
-  std::vector<JointSpec> new_joints;  // of loops, each in the place of a joint that was cut
+  std::vector<JointSpec> new_joints;  // from loops, each in the place of a cut joint
   std::vector<LoopSpec> new_loops;
   for (std::size_t i = 0; i < given.loops.size(); ++i)
     if (graph.loop(i) >= 0 && edges[static_cast<std::size_t>(graph.loop(i))].in_tree) {
@@ -133,7 +133,8 @@ class Contest {
   Contest(const Mechanism& given, const std::vector<CutEdge>& edges, Recut& best)
       : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best), best_edges_(edges) {}
 
-  /// Whether the sweeps carry its loops; `edges`: its tree, which enters once.
+  /// Enters a scene; returns whether the sweeps carry its loops. `edges`: its tree, which enters
+  /// once.
   bool enter(Recut found, const std::vector<CutEdge>& edges) {
     const int before = changes_;
     const bool swept = enter_in_every_order(std::move(found));
@@ -141,7 +142,7 @@ class Contest {
     entered_.push_back({edges, swept});
     return swept;
   }
-  /// How often another scene became the best.
+  /// Number of times that the best changed.
   int changes() const { return changes_; }
   /// Whether the sweeps carry the loops of a tree that has entered.
   std::optional<bool> entered(const std::vector<CutEdge>& edges) const {
@@ -149,11 +150,11 @@ class Contest {
                                     [&](const Entered& e) { return e.edges == edges; });
     return found == entered_.end() ? std::nullopt : std::optional(found->swept);
   }
-  /// The tree of the best.
+  /// Tree of the best scene.
   const std::vector<CutEdge>& edges() const { return best_edges_; }
 
  private:
-  /// The orders of least cost first: those behind one that is swept are no better.
+  /// Enters orders of least cost first: those after one that is swept are no better.
   bool enter_in_every_order(Recut found) {
     struct Entry {
       Scene scene;
@@ -178,7 +179,7 @@ class Contest {
     bool now_swept = !found.gains() && swept_;  // the given scene
     found.scene = {};
     for (Entry& entry : entries) {
-      // most that enter are no better: that is seen without their sweeps
+      // most entries are no better, as their cost alone tells
       bool swept =
           swept_ && entry.cost.open <= LoopPlan::most_slots && !better(entry.cost, best_.after);
       if (!swept) {
@@ -219,17 +220,17 @@ class Contest {
   std::vector<Entered> entered_;
 };
 
-/// J knows nothing of lanes. Of small mechanisms the trees one exchange away from the best are
-/// tried themselves, where all that are open might go into fewer; a tree enters once, so that this
-/// ends. `rebuilt`: rebuild() of a tree's edges.
+/// J ignores lanes. For small mechanisms the trees one exchange away from the best enter too, where
+/// the open equations might fit fewer lanes; a tree enters once, so that this ends. `rebuilt`:
+/// rebuild() of a tree's edges.
 template <class Rebuilt>
 void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Contest& contest,
                     const Recut& best) {
-  constexpr int most_bodies = 30, most_tried = 700;  // tried: times bodies
+  constexpr int most_bodies = 30, most_tried = 700;  // most_tried: trees times bodies
   if (graph.vertices() > most_bodies) return;
   int tried = 0;
   const auto one_better = [&] {
-    const std::vector<CutEdge> from = contest.edges();  // kept: that of the best may change below
+    const std::vector<CutEdge> from = contest.edges();  // a copy: the best may change below
     const Cycles around(graph.vertices(), from);
     for (std::size_t e = 0; e < from.size(); ++e) {
       if (from[e].in_tree || from[e].fixed) continue;

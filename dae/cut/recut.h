@@ -26,11 +26,11 @@ struct Recut {
   std::vector<std::string> cut;     ///< joints that became loops, in the order of the scene
   std::vector<std::string> joined;  ///< loops that became joints
   bool reordered = false;           ///< trees on the ground stand in another order (root_order.h)
-  bool children_reordered = false;  ///< children of bodies do (child_order.h)
+  bool children_reordered = false;  ///< so do children of bodies (child_order.h)
   CutCost before, after;
   Scene scene;  ///< with the remarks; the given one where nothing is gained
-  /// Of `scene` with the algebra of the given one, nothing else asked for; null where nothing is
-  /// gained.
+  /// Mechanism of `scene` with the algebra of the given one, else default options; null where
+  /// nothing is gained.
   std::shared_ptr<const Mechanism> mechanism;
   bool gains() const { return !cut.empty() || reordered || children_reordered; }
 };
@@ -39,10 +39,10 @@ struct Recut {
 std::string in_words(const Recut& recut);
 
 /// The best cuts found, and the best order of the trees on the ground and of children: by descent
-/// from the given tree, from a shallow and from a deep one; those given where that lowers neither
-/// the cost of the sweeps by two hundredths nor, at as much more, the entries of M by a quarter.
-/// Where the sweeps can't carry the loops either way, the entries of L decide instead. Bounded
-/// effort: of a hundred thousand bodies some seconds.
+/// from the given tree, a shallow and a deep one; those given where that lowers neither the cost of
+/// the sweeps by two hundredths nor, at as much more, the entries of M by a quarter. Where the
+/// sweeps can't carry the loops, the entries of L decide. Bounded effort: some seconds for a
+/// hundred thousand bodies.
 /// @throws SceneError where `keep` names neither a joint nor a loop
 Recut recut(const Mechanism& mechanism, const Start& start,
             const std::vector<std::string>& keep = {});

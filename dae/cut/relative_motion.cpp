@@ -15,7 +15,7 @@ Matrix3d turn(const Vector3d& axis, double angle) {
   return AngleAxisd(angle, axis).toRotationMatrix();
 }
 
-/// Angle about `axis` from what `from` points to across it to what `to` does.
+/// Angle about `axis` from `from` to `to`, both taken across it.
 double angle_about(const Vector3d& axis, const Vector3d& from, const Vector3d& to) {
   return std::atan2(axis.dot(from.cross(to)), from.dot(to) - axis.dot(from) * axis.dot(to));
 }

@@ -11,7 +11,7 @@ namespace momenta {
 
 struct JointMotion {
   std::vector<double> q, u;    ///< as JointSpec has them
-  double shift = 0, tilt = 0;  ///< what the joint's q leave of the pose: [m], sine of an angle
+  double shift = 0, tilt = 0;  ///< part of the pose that q does not give: [m], sine of an angle
 };
 
 /// @pre Not a user joint; a helical one as a hinge alone.

@@ -67,7 +67,6 @@ bool driven(const Scene& scene, const std::string& loop) {
 
 enum class RootOrder { from_an_end, from_the_centre };
 
-/// The place of each tree.
 std::vector<std::size_t> places(const Trees& trees, RootOrder order) {
   std::vector<std::size_t> place(trees.count());
   std::vector<char> placed(trees.count(), 0);
@@ -106,7 +105,7 @@ OrderedLoops ordered_loops(const Scene& scene, const std::vector<std::vector<std
                            const std::vector<std::size_t>& place) {
   OrderedLoops loops;
   loops.turned.assign(scene.loops.size(), 0);
-  std::vector<std::pair<std::size_t, std::size_t>> by_place;  // of its first tree, in the scene
+  std::vector<std::pair<std::size_t, std::size_t>> by_place;  // first tree's place; loop
   for (std::size_t i = 0; i < scene.loops.size(); ++i) {
     std::size_t least = place.size();
     for (const std::size_t one : tied[i]) least = std::min(least, place[one]);

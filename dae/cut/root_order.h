@@ -15,9 +15,8 @@
 
 namespace momenta {
 
-/// The scene in either order, where that is another than its own and than the one before: the
-/// joints of the ground, and the loops in the order of the first tree they tie, seen from it.
-/// O((bodies + loops) log)
+/// The scene in either order, unless that is its own or the one before: the joints of the ground,
+/// and the loops in the order of the first tree they tie, seen from it. O((bodies + loops) log)
 std::vector<Scene> with_roots_ordered(const Scene& scene);
 
 }  // namespace momenta

@@ -26,16 +26,15 @@ namespace momenta {
 class WrittenMotion {
  public:
   /// `start` of the mechanism as written, from which angles are counted. `folded`: its scene, with
-  /// the joints as they were before others were cut. Nothing of all that need outlive it.
+  /// the joints as they were before others were cut. None of these need outlive it.
   WrittenMotion(const Mechanism& written, const Start& start, const FoldedScene& folded,
                 const Mechanism& integrated);
 
   /// q (nq), u (nv) of the scene as written, from those of the integrated scene. O(bodies)
   void read(double t, const Eigen::VectorXd& integrated_q, const Eigen::VectorXd& integrated_u,
             Eigen::VectorXd& q, Eigen::VectorXd& u);
-  /// q alone.
   void read_coordinates(double t, const Eigen::VectorXd& integrated_q, Eigen::VectorXd& q);
-  /// The time before.
+  /// The last reading: t, q and u.
   void carry(Memory& memory);
 
  private:
@@ -57,13 +56,12 @@ class WrittenMotion {
     JointSpec joint;
     std::vector<Part> parts;
   };
-  /// All q, and the rates of joints that were cut or folded away. @pre the bodies are where they
-  /// are at t
+  /// Sets all q, and rates of joints cut or folded away. @pre bodies are placed at t
   void take_all(double t, const Eigen::VectorXd& integrated_q, Eigen::VectorXd* u,
                 Eigen::VectorXd& q) const;
-  /// Of joints that were folded away; `u`: or null.
+  /// Sets q and, unless null, u of joints folded away.
   void follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) const;
-  /// Whole turns and signs; `rate`: of an angle since the time before.
+  /// Chooses whole turns and signs; `rate`: mean rate of an angle since the last reading.
   void take_turns(const Part& part, double t, double rate, Eigen::VectorXd& q) const;
 
   std::vector<Copied> copied_q_, copied_u_;

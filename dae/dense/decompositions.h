@@ -1,6 +1,6 @@
 #pragma once
-// Dense decompositions that several studies take, half a minute of compilation together, compiled
-// once and without haste: what runs evaluate once a step has its own.
+// Dense decompositions of several studies, compiled once, for half a minute, with little
+// optimisation: what runs evaluate once a step has its own.
 
 #include <momenta/dae/dense/singular_values.h>
 

@@ -12,12 +12,12 @@ class DenseLeastSquares {
   DenseLeastSquares();
   ~DenseLeastSquares();
 
-  /// Of A (m × n), A P = Q (R 0; 0 0) Z: pivots below `threshold` of the largest are none.
-  /// O(m n min(m, n)).
+  /// Factorises A (m × n), A P = Q (R 0; 0 0) Z; pivots below `threshold` of the largest count as
+  /// zero. O(m n min(m, n)).
   void compute(const Eigen::MatrixXd& a, double threshold);
   /// The same with Eigen's own threshold, min(m, n) ε.
   void compute(const Eigen::MatrixXd& a);
-  /// Of A of full column rank, m ≥ n: A = Q R.
+  /// Factorises A of full column rank, m ≥ n: A = Q R.
   void compute_full_rank(const Eigen::MatrixXd& a);
 
   /// The x of least |x| among those of least |A x − b|, for each column b.

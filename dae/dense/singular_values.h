@@ -15,9 +15,9 @@ struct SingularValues {
   explicit SingularValues(const Eigen::MatrixXd& a,
                           unsigned options = Eigen::ComputeFullU | Eigen::ComputeFullV);
 
-  /// How many values are above this part of the largest.
+  /// Number of values above this part of the largest.
   Eigen::Index rank(double part) const;
-  /// The least x (n) with the least |A x − b|, by so many values. O(rank (m + n))
+  /// The least x (n) with the least |A x − b|, by `rank` values. O(rank (m + n))
   Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const;
 
   Eigen::VectorXd values;  ///< descending

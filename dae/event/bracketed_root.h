@@ -22,8 +22,8 @@ struct BracketedRoot {
   double before = 0, after = 0;
 };
 
-/// g(a) and g(b) of opposite signs, to within `tolerance` and rounding of the place. Not a number
-/// where g is none on the way. About ten values of a smooth g.
+/// Root of g between a and b, where g has opposite signs, to within `tolerance` and rounding of the
+/// place. NaN where g is on the way. About ten values of a smooth g.
 template <class G>
 BracketedRoot bracketed_root(G&& g, double a, double at_a, double b, double at_b,
                              double tolerance) {

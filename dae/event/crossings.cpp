@@ -10,10 +10,10 @@ namespace {
 
 constexpr int most_halvings = 6;
 constexpr std::size_t last = Crossings::points - 1;
-constexpr std::size_t fine = 4;              ///< places of p a point of g
-constexpr std::size_t places = fine * last;  ///< and one
+constexpr std::size_t fine = 4;              ///< places of p per point of g
+constexpr std::size_t places = fine * last;  ///< intervals between places of p
 constexpr double resolved_to = 1e-3;         ///< trailing coefficients over the largest
-constexpr double rounding = 1e-13;           ///< of g over its size: not a change
+constexpr double rounding = 1e-13;           ///< error of g over its size
 constexpr double near_zero = 0.02;           ///< minima of |p| over its range
 constexpr double start_is_zero = 1e-12;      ///< g at the start over its size in the first step
 
@@ -77,7 +77,7 @@ void Crossings::step(double t0, double t1, const Values& at_points,
   const int first = sign_of(values[0]);
   double size = 0;
   for (const double x : values) size = std::max(size, std::abs(x));
-  // The start, or what a correction has moved through zero.
+  // The start, or a correction that moved g through zero.
   if (begun_ ? sign_ != 0 && first != 0 && first != sign_
              : std::abs(values[0]) <= start_is_zero * size)
     values[0] = 0;
@@ -117,7 +117,7 @@ void Crossings::look_at(double t0, double t1, const Values& values) {
       const bool turns = j % fine != 0 && (sign_of(before) == -sign || sign_of(after) == -sign);
       const double from = time(j == 0 ? 0 : j - 1), to = time(std::min(j + 1, places));
       if (turns) places_.push_back({time(j), (*g_)(time(j))});
-      // A polynomial that is beyond zero where g is not is no nearer to g than that.
+      // A p beyond zero where g is not comes no nearer to g.
       if (turns && sign * places_.back().g < 0)
         places_.push_back(lowest(from, to, -sign));
       else if (!turns && sign * p[j] <= std::min({low, sign * before, sign * after}))
@@ -146,7 +146,7 @@ void Crossings::take(double t, double g) {
     if (at_zero_)
       found_->push_back({end_of_zero(zero_, t), sign > 0});
     else
-      cross(last_->t, last_->g, t, g, sign > 0);  // of this step: its first place is none or zero
+      cross(last_->t, last_->g, t, g, sign > 0);  // in this step: its first place is none or zero
   }
   sign_ = sign;
   at_zero_ = false;

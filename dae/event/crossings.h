@@ -1,6 +1,5 @@
 #pragma once
-// Where a number g(t) passes zero along a run, step by step, g read off the integrator's dense
-// output.
+// Zeros of a number g(t) along a run, step by step, g read off the integrator's dense output.
 //
 // On an interval g is taken at the Chebyshev points t_i = m − h cos(πi/8), i = 0 … 8. Their
 // polynomial p has the coefficients
@@ -13,8 +12,8 @@
 // its range, from which the minimum of |g| is searched: two roots next to each other are found by g
 // beyond zero between them. Between neighbours of opposite signs the root is bracketed.
 //
-// What can be missed: two roots of an interval between whose nine points g turns back more often
-// than p shows, or beyond the sixth halving. What is no crossing: zeros that g touches; the start
+// Missed can be: two roots of an interval between whose nine points g turns back more often
+// than p shows, or beyond the sixth halving. No crossings: zeros that g touches; the start
 // of the run where it is zero there, to 10⁻¹² of its size; a pole, where |g| grows on both sides. A
 // jump through zero is one. Where a correction after a step moves g through zero, the crossing is
 // at the end of the step, and one that is moved back is told once. Source of the resolution by
@@ -35,10 +34,10 @@ struct Crossing {
   bool up = false;
 };
 
-/// Of one number along one run.
+/// Crossings of one number along one run.
 class Crossings {
  public:
-  static constexpr std::size_t points = 9;  ///< of an interval
+  static constexpr std::size_t points = 9;  ///< per interval
   using Values = std::array<double, points>;
 
   /// Roots are found to within `tolerance` [s] and the rounding of t.
@@ -50,15 +49,15 @@ class Crossings {
   /// points. A g that is not a number has no crossing there, nor across.
   void step(double t0, double t1, const Values& at_points, const std::function<double(double)>& g,
             std::vector<Crossing>& found);
-  /// Begins anew at the next step, where g is zero, and then below zero as far as is known: a g
-  /// above zero at once is a crossing there.
+  /// Begins anew at the next step, where g is zero and counts as coming from below: a g above zero
+  /// at once is a crossing there.
   void restart_below_zero(double t) {
     restart();
     begun_ = at_zero_ = true;
     zero_ = t;
     sign_ = -1;
   }
-  /// Of g where it was not zero last; 0: not known.
+  /// Sign of g where it was last nonzero; 0: not known.
   int sign() const { return sign_; }
   /// Begins anew at the next step, before which g had this sign: another sign at once is a crossing
   /// there.
@@ -69,7 +68,7 @@ class Crossings {
   }
   /// Begins anew at the next step, as at the start.
   void restart() { *this = Crossings(tolerance_); }
-  /// Between two steps.
+  /// Saves or restores what lasts from step to step.
   void carry(Memory& memory);
 
  private:
@@ -80,17 +79,17 @@ class Crossings {
   void look_at(double t0, double t1, const Values& values);
   void take(double t, double g);
   void cross(double t0, double g0, double t1, double g1, bool up);
-  /// Where g is zero last, between a place where it is and one where it is not.
+  /// Last zero of g between a place where it is zero and one where it is not.
   double end_of_zero(double zero, double after) const;
   /// The minimum of sign · g between two places, or the first place found beyond zero.
   Place lowest(double t0, double t1, double sign) const;
 
   double tolerance_;
   bool begun_ = false;
-  int sign_ = 0;               ///< of g where it was not zero last; 0: not known
+  int sign_ = 0;
   bool at_zero_ = false;       ///< g has been zero since
-  double zero_ = 0;            ///< and is so here, the last place that was looked at
-  std::optional<Place> last_;  ///< where it was not zero last, in this step
+  double zero_ = 0;            ///< last place looked at, where g is zero
+  std::optional<Place> last_;  ///< last place of this step where g was nonzero
   const std::function<double(double)>* g_ = nullptr;
   std::vector<Crossing>* found_ = nullptr;
   std::vector<Place> places_;

@@ -23,26 +23,26 @@ namespace momenta {
 /// Owns its workspace; one object serves one thread. The mechanism must outlive it.
 class EventValues {
  public:
-  /// Of some events of the mechanism's scene, or of a like one. @throws SceneError for a formula
-  /// that is none, one sentence
+  /// Takes events of the mechanism's scene, or of a like one. @throws SceneError for a formula that
+  /// is none, one sentence
   EventValues(const Mechanism& mechanism, const std::vector<EventSpec>& events);
 
   std::size_t size() const { return events_.size(); }
-  /// Whether any of them depends on u.
+  /// Whether any event depends on u.
   bool takes_rates() const { return takes_rates_; }
-  /// g of each at (t, q, u), not a number where a formula has no value. `u` may be anything where
+  /// g of each event at (t, q, u), NaN where a formula has no value. `u` may be anything where
   /// rates are not taken. O(lengths of the formulas); with markers or lengths of springs O(bodies)
   void at(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, double* values);
 
  private:
-  /// What a variable of a formula is.
+  /// Source of a formula's variable.
   struct Input {
     enum class Of { number, time, q, u, law, law_rate, place, velocity, length, length_rate, sum };
     Of of = Of::number;
-    int which = 0;      ///< in q, u, laws_, points_; of the child's point for lengths
-    int component = 0;  ///< of a point; of lengths the place of the parent's point
+    int which = 0;      ///< index into q, u, laws_, points_; for lengths that of the child's point
+    int component = 0;  ///< component of a point; for lengths the index of the parent's point
     double number = 0;  ///< a parameter
-    std::vector<std::pair<double, Input>> terms{};  ///< of a sum: ratios
+    std::vector<std::pair<double, Input>> terms{};  ///< terms of a sum, with their ratios
   };
   struct Event {
     Expression formula;
@@ -62,7 +62,7 @@ class EventValues {
   std::vector<MarkerSpec> points_;
   std::unique_ptr<Mechanism> open_;  ///< the chain with these points alone; null: no points
   std::unique_ptr<Evaluation<double>> e_;
-  std::vector<double> places_;  ///< of the points: position, velocity
+  std::vector<double> places_;  ///< position, velocity of each point
   std::vector<double> x_, line_;
 };
 

@@ -41,10 +41,10 @@ class Impact {
  public:
   explicit Impact(const Mechanism& mechanism);
 
-  /// u⁻ becomes u⁺ at (t, q), the impulses of the stops are found. Returns the kinetic energy that
-  /// is lost [J]: to the stops, not negative for e ≤ 1, and to drives, by the work that an impact
-  /// does on what they move. Cost: a solution of (7) for each stop. @throws
-  /// std::runtime_error where a coordinate cannot move, one sentence
+  /// Turns u⁻ into u⁺ at (t, q) and finds the stops' impulses. Returns the kinetic energy lost [J]:
+  /// to the stops, not negative for e ≤ 1, and to drives by the impact's work on them. Cost: a
+  /// solution of (7) for each stop. @throws std::runtime_error where a coordinate cannot move, one
+  /// sentence
   double jump(double t, const Eigen::VectorXd& q, Eigen::VectorXd& u,
               std::vector<StopAtImpact>& stops);
 

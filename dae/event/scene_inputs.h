@@ -1,5 +1,6 @@
 #pragma once
-// When the inputs of a scene change in a run: laws of drives, and forces, equations of loops and
+// Times at which inputs of a scene change in a run: laws of drives, and forces, equations of loops
+// and
 // Lagrangians that take the time (core/expression/input_times.h).
 
 #include <momenta/core/scene/scene.h>
@@ -8,7 +9,7 @@
 
 namespace momenta {
 
-/// Ascending [s], inside the run. @pre a valid scene. Cost: 4097 values of each such part
+/// The times inside the run, ascending [s]. @pre a valid scene. Cost: 4097 values of each input
 std::vector<double> input_times(const Scene& scene, double t0, double end);
 
 }  // namespace momenta

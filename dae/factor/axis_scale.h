@@ -1,7 +1,7 @@
 #pragma once
-// How large rows that tie axes are by nature. Where all hinges of a loop are parallel, the
-// equations for its axes vanish to rounding in every entry: they are redundant, not weak, and what
-// is left of them is no scale for anything.
+// Natural sizes of rows that tie axes. Where all hinges of a loop are parallel, the equations for
+// its axes vanish to rounding in every entry: they are redundant, not weak, and their remains are
+// no scale.
 
 #include <momenta/core/tree/tree.h>
 #include <momenta/dae/factor/kkt_pattern.h>
@@ -10,8 +10,8 @@
 
 namespace momenta {
 
-/// Rows on which nothing with inertia hangs have no scale, those of a loop between bodies that are
-/// welded together, the axes of a slide on a slide: any positive one does, here the largest.
+/// Gives rows without a scale the largest one: those on which no inertia hangs, of a loop between
+/// welded bodies or the axes of a slide on a slide, where any positive scale does.
 void scale_idle_rows(std::vector<double>& scale);
 
 class AxisScale {
@@ -22,21 +22,21 @@ class AxisScale {
             const std::vector<int>& groups, const std::vector<double>& least, double spread,
             double apart);
 
-  /// Below which share of its scale a pivot fades, where masses are apart: fade_beside().
+  /// Share of its scale below which a pivot fades, where masses are apart: fade_beside().
   double fading(double fade) const;
 
   /// Per row (m): Σ_j 1/M_jj over the rotations that an axis row hangs on, whose entries are at
-  /// most 1: its W_ii when the axes are anyhow; the least scale for rows of points and
+  /// most 1: its W_ii at axes in general position; the least scale for rows of points and
   /// distances. `inertia`: M_jj (nv).
   void measure(const std::vector<double>& inertia, std::vector<double>& scale) const;
-  /// Per row (m) the mean over the rows of its group of max(Σ_j Φ_ij² / M_jj, the above);
+  /// Per row (m) the mean over the rows of its group of max(Σ_j Φ_ij² / M_jj, measure());
   /// `constraint`: values of Φ_q in the order of the pattern.
   void of_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
                  std::vector<double>& scale) const;
   /// ε of KluSolver (m), from the same. An added block, once refined, costs (ε/W)² on every row: so
-  /// it is a hundred times weaker than the filter of pivots, which costs (τ/W)⁴. The scale is what
-  /// the lightest body of a loop lets a row move; where masses are further apart than
-  /// masses_far_apart, the heaviest's is still above ε.
+  /// it is a hundred times weaker than the filter of pivots, which costs (τ/W)⁴. The scale is a
+  /// row's mobility by the lightest body of its loop; beyond masses_far_apart the heaviest's is
+  /// still above ε.
   void softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
                 double fade, std::vector<double>& epsilon) const;
 
@@ -44,7 +44,7 @@ class AxisScale {
   struct Hanging {
     std::size_t row, rate;  ///< row of Φ, j
   };
-  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
+  const std::vector<KktPattern::Entry>& pattern_;  ///< pattern of Φ_q
   const std::vector<int>& groups_;
   const std::vector<double>& least_;
   double far_apart_;  ///< mass spread over masses_far_apart, at least 1

@@ -38,7 +38,7 @@ bool BodyFronts::factor(const double* compliance, const double* tau) {
   return true;
 }
 
-/// What the body itself and the fronts below it bring.
+/// Adds the body's own entries and the fronts below it.
 void BodyFronts::assemble(const Front& f, const double* compliance) {
   const std::size_t size = at(f.size());
   std::fill_n(a_.begin(), size * size, 0.0);
@@ -68,7 +68,7 @@ void BodyFronts::assemble(const Front& f, const double* compliance) {
   }
 }
 
-/// Rows of one loop after the other, of each the strongest left, relative to where it fades.
+/// Closes loop after loop, of each the strongest row left, relative to where it fades.
 bool BodyFronts::close(const Front& f, const double* tau) {
   const int size = f.size(), first = f.left();
   const int* rows = f.close > 0 ? &row_[f.row + at(f.go_on)] : nullptr;
@@ -95,13 +95,13 @@ bool BodyFronts::close(const Front& f, const double* tau) {
     inverse_[f.pivot + at(k)] = inverse;
     double* h = &column_[f.column + at(k) * at(size)];
     std::copy_n(&a_[at(c) * at(size)], size, h);
-    for (int i = 0; i <= k; ++i) h[first + turn[i]] = 0;  // those have gone
+    for (int i = 0; i <= k; ++i) h[first + turn[i]] = 0;  // rows already closed
     take_away(a_.data(), size, inverse, h);
   }
   return true;
 }
 
-/// u goes, what closed is left behind.
+/// Eliminates u and drops closed rows.
 bool BodyFronts::eliminate(const Front& f) {
   const int size = f.size(), left = f.left(), n = f.rates;
   if (left < size)
@@ -145,7 +145,7 @@ bool BodyFronts::eliminate(const Front& f) {
   return true;
 }
 
-/// (𝒯 ⊕ 1)ᵀ A (𝒯 ⊕ 1), onto the stack.
+/// Puts (𝒯 ⊕ 1)ᵀ A (𝒯 ⊕ 1) onto the stack.
 void BodyFronts::pass_on(const Front& f) {
   const int left = f.left(), passed = f.passed();
   const double* transfer = &value_[f.transfer];

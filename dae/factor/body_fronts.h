@@ -27,13 +27,13 @@ namespace momenta {
 
 class BodyFronts {
  public:
-  /// The bodies as they are carried, each after its parent (−1: the ground), depth first, and where
-  /// unknowns stand: Ω_k at d k, P*_k at d (bodies + k), then u, then σ.
+  /// Bodies, each after its parent (−1: the ground), depth first, and places of unknowns: Ω_k at d
+  /// k, P*_k at d (bodies + k), then u, then σ.
   struct Bodies {
-    int d = 0;                ///< of a motion: 3 or 6
+    int d = 0;                ///< size of a motion: 3 or 6
     std::vector<int> parent;  ///< per body
     std::vector<int> rate;    ///< per body: its first place in u
-    std::vector<int> rates;   ///< per body: how many
+    std::vector<int> rates;   ///< per body: number of its rates
     int nv = 0;
   };
 
@@ -41,11 +41,11 @@ class BodyFronts {
   BodyFronts(const Bodies& bodies, const std::vector<KktPattern::Entry>& entries,
              const std::vector<int>& groups);
 
-  /// To be written, in the order of the entries; those of one place are added.
+  /// Values to write, in the order of the entries; those of one place add up.
   std::vector<double>& values() { return given_; }
-  /// From them, with E (m, null: 0) and τ (m). False where a pivot of u is not positive,
-  /// singular_joint() then its place in u, or where a number is not finite. O(Σ over the bodies of
-  /// (d + open equations)² (rates + closing equations)), no allocation.
+  /// Factorises values() with E (m, null: 0) and τ (m). False where a pivot of u, at place
+  /// singular_joint(), is not positive or a number is not finite. O(Σ over the bodies of (d + open
+  /// equations)² (rates + closing equations)), no allocation.
   bool factor(const double* compliance, const double* tau);
   /// x (nv + m) ← A⁻¹ x, of u and σ.
   void solve(double* x);
@@ -60,7 +60,7 @@ class BodyFronts {
     int d = 0, above = 0;  ///< size of Ω here, and of the parent's
     int body = -1;         ///< −1: the ground
     int rate = 0, rates = 0;
-    int parent = -1;                  ///< front, −1: none
+    int parent = -1;                  ///< index of a front, −1: none
     std::size_t below = 0, last = 0;  ///< into below_: fronts that wait for this one
     std::size_t row = 0;              ///< into row_: rows that go on, then those that close
     int go_on = 0, close = 0;
@@ -80,7 +80,7 @@ class BodyFronts {
     std::size_t value;  ///< its wrench (d)
   };
   struct Tie {
-    int at, rate;  ///< places of the row and among the front's u
+    int at, rate;  ///< places of the row in the front and of the rate among the front's u
     std::size_t value;
   };
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -102,12 +102,12 @@ class BodyFronts {
   };
   std::vector<Target> target_;  ///< per entry
   std::vector<double> given_, value_, column_, inverse_, pivot_;
-  std::vector<int> turn_;     ///< per pivot: which row goes in that turn
+  std::vector<int> turn_;     ///< per pivot: the row that goes in that turn
   std::vector<double> a_;     ///< the front under way, column by column
   std::vector<double> work_;  ///< a column, or a square of d
   std::vector<double> stack_;
   std::size_t top_ = 0;
-  std::vector<double> motion_;  ///< of solve(): by front (d) y, then Ω
+  std::vector<double> motion_;  ///< for solve(): by front (d) y, then Ω
   int nv_ = 0, d_ = 0, singular_joint_ = -1;
 };
 

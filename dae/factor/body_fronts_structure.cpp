@@ -1,4 +1,4 @@
-// Which rows each front holds, in which order fronts go, and where their numbers stand.
+// Rows of each front, order of fronts, and places of their numbers.
 
 #include <momenta/dae/factor/body_fronts.h>
 
@@ -34,7 +34,7 @@ struct BodyFronts::Structure {
   bool is_rate(int i) const { return rate_of(i) >= 0 && rate_of(i) < bodies.nv; }
   int row_of(int i) const { return rate_of(i) - bodies.nv; }
 
-  /// Rows by where they stand in the matrix.
+  /// Finds the bodies and joints of each row from its entries.
   void read() {
     ends.resize(at(rows));
     ties.resize(at(rows));
@@ -87,8 +87,8 @@ struct BodyFronts::Structure {
         fronts.fronts_[at(of_body[at(k)])].parent = of_body[at(bodies.parent[at(k)])];
   }
 
-  /// Where all that a row hangs on has come together: at the lowest common ancestor of its ends and
-  /// of the parents of the joints it ties.
+  /// A row closes where all it hangs on has come together: at the lowest common ancestor of its
+  /// ends and of the parents of the joints it ties.
   void close() {
     closing.resize(at(rows));
     for (int i = 0; i < rows; ++i) {
@@ -150,7 +150,7 @@ struct BodyFronts::Structure {
       }
     }
   }
-  /// Of a row among those of a front.
+  /// Place of a row among those of a front.
   int place_in(const Front& f, int row) const {
     const auto first = fronts.row_.begin() + static_cast<std::ptrdiff_t>(f.row);
     const auto middle = first + f.go_on, last = middle + f.close;
@@ -159,7 +159,6 @@ struct BodyFronts::Structure {
     return static_cast<int>(std::lower_bound(middle, last, row) - first);
   }
 
-  /// Where numbers stand.
   void lay_out() {
     std::size_t value = 0, column = 0, pivot = 0, most = 0, top = 0, highest = 0;
     const auto take = [](std::size_t& total, int n) {
@@ -216,7 +215,7 @@ struct BodyFronts::Structure {
     fronts.given_.resize(entries.size());
   }
 
-  /// Where each entry goes.
+  /// Finds the targets of entries.
   void place() {
     for (const auto& e : entries) {
       const auto [i, j] = std::pair{e.row, e.column};

@@ -6,15 +6,14 @@
 
 namespace momenta {
 
-/// How weak a pivot may be, relative to its group's scale, before it fades: in (7) and (3),
-/// recentred.
+/// Least pivot in (7) and (3), recentred, relative to its group's scale, before it fades.
 inline constexpr double fade_evaluation = 1e-8;
-/// The same in projections, which must remove what is there.
+/// The same in projections, which must remove the whole error.
 inline constexpr double fade_projection = 1e-13;
 
-/// Where the heaviest joint of a loop is `apart` times as heavy as its lightest. The scale of a row
-/// is the mobility of the lightest, and regular pivots of others lie lower by as much: from 10⁴ on
-/// fading starts lower too, down to that of projections, where rounding is.
+/// `fade` where the heaviest joint of a loop is `apart` times as heavy as its lightest, whose
+/// mobility is the row's scale: regular pivots of others lie lower by as much, so from 10⁴ on
+/// fading starts lower, down to fade_projection, where rounding is.
 inline double fade_beside(double fade, double apart) {
   constexpr double unnoticed = 1e4;
   return std::max(fade / std::max(1.0, apart / unnoticed), std::min(fade, fade_projection));

@@ -179,7 +179,7 @@ bool FilteredFactor::factor(const std::vector<double>& mass, const std::vector<d
   return true;
 }
 
-/// Takes away what the columns of `from` leave in those of `to`, the rows from `at` on.
+/// Subtracts the columns of `from` from those of `to`, rows from `at` on.
 void FilteredFactor::update(const Block& from, std::size_t at, const Block& to) {
   for (int c = 0; c < from.size(); ++c) {
     const double inverse = inverse_[static_cast<std::size_t>(from.first + c)];
@@ -208,7 +208,7 @@ bool FilteredFactor::eliminate(const Block& block, const double* tau) {
     turn_[first] = 0;
     return true;
   }
-  // Both triangles of the rows of the loop, which go in an order of their own.
+  // Both triangles of the loop's rows, which are pivoted.
   for (std::size_t j = 0; j < size; ++j)
     for (std::size_t i = 0; i < j; ++i) a[j * height + i] = a[i * height + j];
   int* turn = &turn_[first];

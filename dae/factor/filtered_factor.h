@@ -28,9 +28,9 @@ class FilteredFactor {
   /// `nv` columns of M; `groups` (m): Mechanism::row_groups. The pattern is kept by reference.
   FilteredFactor(const KktPattern& pattern, int nv, const std::vector<int>& groups);
 
-  /// From M and Φ_q in the order of the KKT pattern, E (m, null: 0) and τ (m, 0: no filter). False
-  /// where a pivot of u is not positive or not finite: singular_joint() is its place in u. O(fill),
-  /// no allocation.
+  /// Factorises M and Φ_q, in the order of the KKT pattern, with E (m, null: 0) and τ (m, 0: no
+  /// filter). False where a pivot of u, at place singular_joint(), is not positive or not finite.
+  /// O(fill), no allocation.
   bool factor(const std::vector<double>& mass, const std::vector<double>& constraint,
               const double* compliance, const double* tau);
   /// x (nv + m) ← A⁻¹ x.
@@ -58,14 +58,14 @@ class FilteredFactor {
 
   const KktPattern& pattern_;
   int n_, m_, singular_joint_ = -1;
-  std::vector<int> place_;    ///< of each unknown in the order of elimination
-  std::vector<int> unknown_;  ///< and back
+  std::vector<int> place_;    ///< place of each unknown in the order of elimination
+  std::vector<int> unknown_;  ///< its inverse
   std::vector<Block> blocks_;
   std::vector<int> block_of_;    ///< per column in the order of elimination
   std::vector<int> row_;         ///< in the order of elimination, ascending
   std::vector<double> value_;    ///< columns as they stood when eliminated
   std::vector<double> inverse_;  ///< per column: 1/d, −f(w)
-  std::vector<int> turn_;        ///< per column of a block: which goes in that turn
+  std::vector<int> turn_;        ///< per column of a block: the one that goes in that turn
   std::vector<std::size_t> mass_at_, constraint_at_, diagonal_at_;
   std::vector<int> where_;        ///< row → place in the block under way
   std::vector<int> head_, next_;  ///< blocks whose next rows are in a block

@@ -17,14 +17,14 @@ class FilteredMatrix {
   double* mass() { return mass_.data(); }              ///< to be written, in the pattern's order
   double* constraint() { return constraint_.data(); }  ///< likewise
 
-  /// From these, E (m, null: 0; no row fades then) and `fade`, how weak a pivot may be relative to
-  /// its group's scale. False where a scale is not finite, or as FilteredFactor::factor(). O(fill),
-  /// no allocation.
+  /// Factorises with E (m), with which no row fades (null: 0), and `fade`, how weak a pivot may be
+  /// relative to its group's scale. False where a scale is not finite, or as
+  /// FilteredFactor::factor(). O(fill), no allocation.
   bool factor(const double* compliance, double fade);
 
   const FilteredFactor& factors() const { return factor_; }
   void solve(double* x) { factor_.solve(x); }  ///< x (nv + m) ← A⁻¹ x
-  /// By row (m), of the last factor(): the pivot below which it fades; 0: it does not.
+  /// Pivot below which each row (m) fades in the last factor(); 0: it does not.
   const std::vector<double>& fading() const { return tau_; }
 
  private:

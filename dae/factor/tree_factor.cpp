@@ -30,7 +30,7 @@ TreeFactor::TreeFactor(const KktPattern& pattern, int nv)
 }
 
 int TreeFactor::factor(const std::vector<double>& mass) {
-  // What descendants move alone leaves that much of M_kk in place of zero.
+  // A pivot below this part of M_kk is rounding in place of zero.
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < mass.size(); ++i) value_[place_[i]] = mass[i];
   for (std::size_t k = 0; k < diagonal_.size(); ++k) diagonal_[k] = value_[start_[k]];

@@ -13,8 +13,8 @@ class TreeFactor {
  public:
   TreeFactor(const KktPattern& pattern, int nv);
 
-  /// From the values of M in the order of the pattern. Returns −1, or the place in u at which M is
-  /// not positive.
+  /// Factorises M from its values in the order of the pattern. Returns −1, or the place in u at
+  /// which M is not positive.
   int factor(const std::vector<double>& mass);
 
   /// x ← L⁻ᵀ x (nv): momenta inward, tips to root. Zeros at the tips cost nothing.
@@ -37,10 +37,10 @@ class TreeFactor {
   const std::vector<double>& inverse_pivots() const { return inverse_; }
 
  private:
-  std::vector<std::size_t> start_;  ///< of each column: itself, then its ancestors, nearest first
+  std::vector<std::size_t> start_;  ///< per column: itself, then its ancestors, nearest first
   std::vector<std::size_t> row_;
   std::vector<double> value_;
-  std::vector<std::size_t> place_;  ///< of each pattern entry in value_
+  std::vector<std::size_t> place_;  ///< place of each pattern entry in value_
   std::vector<double> inverse_;
   std::vector<double> diagonal_;  ///< M_kk
 };

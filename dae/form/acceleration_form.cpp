@@ -94,7 +94,7 @@ bool AccelerationForm::correct_velocity(double t, const double* q, double* u) {
 double AccelerationForm::motion_error_squared(double t, const double* y, const double* error,
                                               double rtol, double atol) {
   const int nq = mechanism_.nq();
-  // M e_u, without what drives add to p.
+  // M e_u, without the drives' part of p.
   e_->place(t, y);
   e_->move(at_rest_.data());
   e_->momenta(nullptr, delta_.data());

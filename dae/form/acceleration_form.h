@@ -1,5 +1,5 @@
 #pragma once
-// What the ODE forms in q, u share: (3) with feedback of Φ and Φ̇, and corrections of q and u after
+// Base of the ODE forms in q, u: (3) with feedback of Φ and Φ̇, and corrections of q and u after
 // steps. (3) is solved once or, with a softened solver, repeatedly, each time around the
 // multipliers just found.
 
@@ -12,10 +12,8 @@ struct Feedback {
   double alpha = 0, beta = 0;
 };
 
-/// A repeated correction of positions ends with one of this size: its square is rounding [rad or
-/// lengths].
+/// Size of a last position correction, whose square is rounding [rad or lengths].
 inline constexpr double last_correction = 1e-8;
-/// And after so many.
 inline constexpr int most_corrections = 10;
 
 class AccelerationForm : public OdeForm {
@@ -36,7 +34,7 @@ class AccelerationForm : public OdeForm {
     OdeForm::begin_step(t, y);
     centre_ = multipliers_;
   }
-  /// Where q and u are corrected after steps, so are they in stages next to a singular pose.
+  /// Forms that correct q and u after steps do so in stages next to a singular pose.
   SingularityHandling wanted_handling() const override {
     return corrects() && solutions_ == 1 ? handling_ : SingularityHandling::none;
   }
@@ -49,7 +47,7 @@ class AccelerationForm : public OdeForm {
 
  protected:
   bool corrects() const { return has_loops() && options_.project; }
-  /// The correction after a step: of q, then of u.
+  /// Corrects q, then u, after a step.
   virtual bool correct(double t, double* q, double* u) {
     return correct_position(t, q) && correct_velocity(t, q, u);
   }
@@ -58,18 +56,18 @@ class AccelerationForm : public OdeForm {
 
  private:
   Feedback feedback_;
-  int solutions_;  ///< of (3) in one evaluation, each around the λ of the one before
+  int solutions_;  ///< solutions of (3) per evaluation, each around the last λ
   std::vector<double> nu_;
   bool corrects_stages_ = false;
   std::vector<double> state_;    ///< (q, u) where f is taken, with singularity handling
-  std::vector<double> at_rest_;  ///< no rates
+  std::vector<double> at_rest_;  ///< zeros (nv)
 };
 
-/// The DAE of index 1 that (3) with feedback solves: acceleration-index1, with that of Φ and Φ̇.
+/// acceleration-index1 with feedback: the DAE that (3) with it solves.
 std::unique_ptr<Form> make_acceleration_index1_with(Feedback feedback, const Mechanism& mechanism,
                                                     const FormOptions& options, const Start& start);
 
-/// The gains given, or critically damped ones at the mechanism's own rate, default_leak's.
+/// The gains given, or critically damped ones at the rate default_leak().
 Feedback feedback_of(const Mechanism& mechanism, const FormOptions& options, const Start& start);
 
 }  // namespace momenta

@@ -14,7 +14,7 @@
 namespace momenta {
 namespace {
 
-constexpr double near_pivot = 1e-2;  // of the best: near a singular pose
+constexpr double near_pivot = 1e-2;  // relative to the best: near a singular pose
 
 /// Why there is no u of M u + prescribed part = p at (t, q); empty: there is one.
 std::string without_rates(const std::string& form, const Mechanism& mechanism,
@@ -61,7 +61,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 }
 
 void DaeForm::find_redundancy(const Start& start) {
-  if (!mechanism_.leaves_first()) {  // no pivot of the loops tells
+  if (!mechanism_.leaves_first()) {  // the loops have no pivots of their own
     plain_.e->place(start.t, start.q.data());
     if (loop_rank(mechanism_, *plain_.e, Judged::dependence).rank == layout_.m) return;
   } else if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
@@ -76,8 +76,8 @@ void DaeForm::find_redundancy(const Start& start) {
     plain_.e->place(start.t, start.q.data());
   }
   epsilon_ = row_scales(mechanism_, *plain_.e);
-  // The scale is that of the lightest; nothing takes back what ε costs the rows of the heaviest. On
-  // σ it cannot be much smaller: what rounding leaves in redundant rows, over ε, shortens steps.
+  // ε fits the lightest bodies; its error in rows of the heaviest is not corrected. On σ it cannot
+  // be much smaller: rounding in redundant rows, over ε, shortens steps.
   const double unweakened = momentum_like() ? masses_far_apart : 1e2;
   const double weaker = std::max(1.0, mechanism_.mass_spread() / unweakened);
   for (double& epsilon : epsilon_) epsilon *= std::pow(sizes_.rate, -layout_.below) * 1e-9 / weaker;
@@ -87,8 +87,8 @@ void DaeForm::find_redundancy(const Start& start) {
                     std::pow(sizes_.rate, layout_.below - 1);
 }
 
-/// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it,
-/// ε/h, grows as the step shrinks, so that at tight tolerances no first step would be short enough.
+/// An untested x does not stop Newton's method either: rounding of q leaves ε/h in it, which grows
+/// as the step shrinks, so that at tight tolerances no first step would be short enough.
 double DaeForm::scale(int i) const {
   const bool is_rate = i >= layout_.x() && i < layout_.x() + layout_.nv;
   if (is_rate && !rate_is_tested()) return std::numeric_limits<double>::infinity();
@@ -167,7 +167,7 @@ void DaeForm::complete(double t, const double* u, const double* udot, const doub
   if (layout_.position_multiplier) std::fill_n(y + layout_.mu(), layout_.m, 0.0);
 }
 
-/// Relative to the best so far: loops that are weak throughout are no pose to be passed. A
+/// Pivots count relative to the best so far: loops weak throughout make no singular pose. A
 /// hundredth is a tenth of a radian away.
 bool DaeForm::near_singular(double t, const double* y) {
   if (layout_.m == 0) return false;
@@ -215,7 +215,7 @@ void DaeForm::look_beside_start() {
     if (beside.weakest < near_pivot) return;
     d.always_faded = beside.faded;
     d.strongest = beside.weakest;
-    // Soft rows that nothing dampens swing at index 3. The start is left as an ODE.
+    // Undamped soft rows swing at index 3. The run leaves the start as an ODE.
     if (beside.faded == 0) epsilon_.clear();
     return;
   }
@@ -372,7 +372,6 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
          kkt_->solve(r.data(), g.data(), y + layout_.s(), out.u.data(), sigma.data());
 }
 
-/// By the factors of M along the tree.
 bool DaeForm::open_rates(double t, const double* y, double* u) {
   auto& e = *plain_.e;
   const auto& pattern = mechanism_.kkt_pattern();
@@ -382,7 +381,7 @@ bool DaeForm::open_rates(double t, const double* y, double* u) {
   e.mass_entries(mass.data());
   if (factor.factor(mass) >= 0) return fail(without_rates(name_, mechanism_, e, t, y));
   e.move(nullptr);
-  e.momenta(nullptr, u);  // what drives prescribe
+  e.momenta(nullptr, u);  // the prescribed part
   for (int i = 0; i < layout_.nv; ++i) u[i] = y[layout_.x() + i] - u[i];
   factor.inward(u);
   for (int i = 0; i < layout_.nv; ++i) u[i] *= factor.inverse_pivots()[static_cast<std::size_t>(i)];

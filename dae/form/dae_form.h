@@ -1,6 +1,6 @@
 #pragma once
-// What the DAE forms share: the layout of their unknowns, the rows every form has, exact Jacobians
-// by dual numbers.
+// Base of the DAE forms: the layout of their unknowns, the rows every form has, exact Jacobians by
+// dual numbers.
 //
 //   y = ( q | x | v | s | μ ),  x = p or v; v, s, μ only where the form has them; s = σ or λ
 // Rows: nv kinematic or momentum rows; one row q·q̇ + ρ (|q|² − 1)/2 = 0 per quaternion; nv dynamic
@@ -31,7 +31,7 @@ struct DaeLayout {
   int size() const { return s() + m + (position_multiplier ? m : 0); }
 };
 
-/// What x and s are: v with λ; p of (4) with λ; p of (7), Φ_qᵀσ in it, with σ.
+/// x and s: v with λ; p of (4) with λ; p of (7), with Φ_qᵀσ in it, with σ.
 enum class Unknowns { velocities, momenta, impulses };
 
 /// Buffers of one scalar type.
@@ -66,7 +66,7 @@ class DaeForm : public Form, public DaeSystem {
   int size() const override { return layout_.size(); }
   bool residual(double t, const double* y, const double* ydot, double* r) override;
   bool jacobian(double t, const double* y, const double* ydot, double c, double* values) override;
-  /// Found when first asked for.
+  /// Analysed at the first call.
   const JacobianPattern& pattern() const override;
   LocalJacobian* local() override;
   /// The local matrix, whatever the size.
@@ -94,8 +94,8 @@ class DaeForm : public Form, public DaeSystem {
   virtual void equations(DaeScratch<LocalDual>& s, double t, const LocalDual* y,
                          const LocalDual* ydot, LocalDual* r) = 0;
   virtual void equations(DaeScratch<Jet>& s, double t, const Jet* y, const Jet* ydot, Jet* r) = 0;
-  /// Whether x takes part in the error test: not in index-3 forms, whose x is one derivative
-  /// rougher than q.
+  /// Whether x takes part in the error test: not at index 3, where x is one derivative rougher than
+  /// q.
   virtual bool rate_is_tested() const { return true; }
 
   double leak() const { return gauge_.kappa; }
@@ -107,10 +107,10 @@ class DaeForm : public Form, public DaeSystem {
   NaturalSizes sizes_;
 
  private:
-  /// Redundant or singular loops at the start: −ε (s − s₀) on the rows that determine s (and
-  /// −10⁻³ ε μ, by units of mass and time), so that the Newton matrix stays regular; s₀ is s at the
-  /// start, which is consistent so. Its ε s₀ would open Φ there at once, and a first step h answer
-  /// by u ~ ε s₀/h. The bias on u is ε (s − s₀), which the gauge keeps small.
+  /// Where loops are redundant or singular at the start: adds −ε (s − s₀) to the rows that
+  /// determine s (and −10⁻³ ε μ, by units of mass and time), which keeps the Newton matrix regular.
+  /// s₀ is s at the start: ε s₀ would open Φ there, and a first step h answer by u ~ ε s₀/h. The
+  /// gauge keeps the bias of u, ε (s − s₀), small.
   template <class S>
   void regularise(const S* y, S* r) const {
     if (epsilon_.empty()) return;
@@ -128,17 +128,17 @@ class DaeForm : public Form, public DaeSystem {
   class Local;
   /// u of M u + prescribed part = p (4).
   bool open_rates(double t, const double* y, double* u);
-  /// y and y' at q, with s, and p where it has σ in it, in place: the rest from u, u̇, λ.
+  /// Fills y and y' from u, u̇, λ; q, s, and p where σ is in it, are in y already.
   void complete(double t, const double* u, const double* udot, const double* lambda, double* y,
                 double* ydot);
   void find_redundancy(const Start& start);
   /// Pivots of the loops at a pose, in the solver of ode_restart_; false: there are none.
   bool find_pivots(double t, const double* q);
-  /// The motion as an ODE, on the loops' poses.
+  /// The ODE form of restarts, with loops closed.
   OdeForm& restart_form();
-  /// Which rows have no pivot everywhere, where rows have none at the start.
+  /// Finds the rows without a pivot everywhere, where some have none at the start.
   void look_beside_start();
-  /// Dense, or a pattern and the columns that can share a direction.
+  /// Sets pattern_ (empty: dense) and the columns that share a direction.
   void analyse_pattern();
 
   std::string name_;
@@ -149,7 +149,7 @@ class DaeForm : public Form, public DaeSystem {
   double softness_of_mu_ = 0;    ///< ε of μ over that of s [kg, or kg s]
   std::vector<double> inertia_;  ///< diagonal of M at the start
   DaeScratch<double> plain_;
-  DaeScratch<Dual8> dual_;  ///< filled when first asked for, as all that follow
+  DaeScratch<Dual8> dual_;  ///< filled at first use, as all that follow
   DaeScratch<Jet> jet_;
   std::unique_ptr<LocalJacobian> local_;
   std::vector<double>
@@ -158,7 +158,7 @@ class DaeForm : public Form, public DaeSystem {
   std::unique_ptr<Kkt> kkt_;            ///< for reading momentum states back
   std::unique_ptr<LoopSolver> reader_;  ///< the same for large mechanisms
   FormOptions options_;
-  /// Past singular poses: the momentum form, and a solver of (7) to see them come.
+  /// The momentum form that passes singular poses, and a solver of (7) that foresees them.
   struct OdeRestart {
     std::unique_ptr<OdeForm> form;
     std::unique_ptr<LoopSolver> solver;
@@ -167,7 +167,7 @@ class DaeForm : public Form, public DaeSystem {
     double strongest = 0;  ///< largest of the weakest pivots so far
     int always_faded = 0;
   } ode_restart_;
-  JacobianPattern pattern_;  ///< with its batches; empty batches: not yet analysed
+  JacobianPattern pattern_;  ///< known once batches_ is not empty
   std::vector<std::vector<int>>
       batches_;  ///< per dual evaluation: the direction of each column, −1: none
   std::vector<std::vector<std::vector<int>>>
@@ -276,8 +276,8 @@ class DaeFormOf : public DaeForm {
   }
 
  private:
-  /// One row per quaternion: its length returns to 1 within the time scale of the motion, without
-  /// touching that.
+  /// One row per quaternion: its length returns to 1 within the motion's time scale, without an
+  /// effect on the motion.
   template <class S>
   S* quaternion_rows(const S* q, const S* qdot, S* r) const {
     if (!mechanism_.plan().quasi_velocities) return r;

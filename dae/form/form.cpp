@@ -63,7 +63,7 @@ std::string Gauge::text() const {
   if (kind == Kind::none) return "none";
   if (kind == Kind::reset) return "reset";
   if (kind == Kind::flip) return "flip";
-  if (kappa == 0) return "leak";  // at the rate that the start asks for
+  if (kappa == 0) return "leak";  // at default_leak()
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, kappa).ptr;
   return "leak:" + std::string(digits, end);

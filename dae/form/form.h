@@ -14,18 +14,17 @@
 
 namespace momenta {
 
-/// The gauge: the rule that chooses the free part of σ. (p, σ) → (p + Φ_qᵀc, σ + c) leaves q(t)
-/// unchanged for constant c, so a gauge can keep σ small. Without one, σ grows like t under a mean
-/// load, and the local error grows with it.
+/// The rule that chooses the free part of σ. (p, σ) → (p + Φ_qᵀc, σ + c) leaves q(t) unchanged for
+/// constant c, so a gauge can keep σ small. Without one σ grows like t under a mean load, and the
+/// local error with it.
 struct Gauge {
-  /// The rules.
   enum class Kind {
     none,   ///< nothing is done
     leak,   ///< σ decays at the rate κ all the time
     reset,  ///< σ = 0 after each step
     flip    ///< σ → −σ after each step
   };
-  Kind kind = Kind::none;  ///< the rule
+  Kind kind = Kind::none;
   /// Leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak).
   double kappa = 0;
   /// The text that parse_gauge reads.
@@ -35,9 +34,8 @@ struct Gauge {
 /// sentence.
 Gauge parse_gauge(const std::string& text);
 
-/// Options of a form.
 struct FormOptions {
-  Gauge gauge;  ///< of momentum forms
+  Gauge gauge;  ///< for momentum forms
   /// One position correction in the mass metric after each accepted step (one-step methods).
   bool project = false;
   double baumgarte_alpha = 0;  ///< [1/s]; 0: chosen by the form
@@ -57,8 +55,7 @@ struct Start {
   Eigen::VectorXd residue;  ///< Φ that contradictions leave (m); empty: none
 };
 
-/// q, u and the multipliers, read back from the state of a form: the impulse multipliers σ of
-/// momentum forms, the force multipliers λ of the others.
+/// q, u and multipliers read back from a form's state: σ of momentum forms, λ of the others.
 struct Snapshot {
   Eigen::VectorXd q;            ///< nq
   Eigen::VectorXd u;            ///< nv
@@ -82,8 +79,7 @@ class Form {
     std::copy_n(y, q.size(), q.begin());
     return true;
   }
-  /// How often the form chose its independent coordinates, the first time included; zero for forms
-  /// that choose none.
+  /// Number of choices of independent coordinates, the first included; zero for forms without.
   virtual long partitions() const { return 0; }
   /// The gauge in force, with its κ.
   virtual Gauge gauge() const { return {}; }
@@ -118,10 +114,9 @@ bool is_dae_form(const std::string& name);
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
                                 const FormOptions& options, const Start& start);
 
-/// A leak rate that fits the mechanism [1/s]: the square root of the largest acceleration that the
-/// loops cause at the start, slides in lengths of the scene, or the fastest turn if that is more;
-/// where both are zero that of weight, or ten in the time of a run. The optimum is flat over a
-/// decade on either side.
+/// A leak rate that fits the mechanism [1/s]: the square root of the largest acceleration that
+/// loops cause at the start, slides in lengths of the scene, or the fastest rate if that is more;
+/// where both are zero ten per run. The optimum is flat over a decade on either side.
 double default_leak(const Mechanism& mechanism, const Start& start);
 
 }  // namespace momenta

@@ -28,8 +28,8 @@ HalfExplicitParts::Work::Work(const Mechanism& mechanism, std::vector<double> co
 }
 
 /// Off the manifold redundant equations contradict each other by the square of the distance, which
-/// divided by ε is λ or σ: a larger ε than Newton matrices have. What it costs goes with the change
-/// of the multiplier from stage to stage.
+/// divided by ε is λ or σ: ε is larger than in Newton matrices. Its error goes with the
+/// multiplier's change from stage to stage.
 HalfExplicitParts::Work& HalfExplicitParts::work() {
   constexpr double softer = 1e3;
   if (!work_) {
@@ -56,8 +56,8 @@ bool HalfExplicitParts::rub(double t, const double* q, const double* u) {
   return !friction || friction->at(t, q, u) || failed(friction->failure());
 }
 
-/// A correction below last_correction leaves its square. One that does not shrink is no way there:
-/// the step was too long.
+/// A correction below last_correction leaves its square; one that does not shrink tells that the
+/// step was too long.
 bool HalfExplicitParts::meet_positions(double t, double* q, const NaturalSizes& natural) {
   Work& w = work();
   if (!w.solver) return true;

@@ -1,8 +1,7 @@
 #pragma once
-// What the two forms of index 2 share as half-explicit systems: evaluations and solvers, made at
-// their first use. The multipliers z of a stage that satisfy the hidden constraint are those of the
-// right-hand side of the ODE form; SplitKkt solves for the z that lead onto the constraint at the
-// next stage.
+// Base of the two forms of index 2 as half-explicit systems: evaluations and solvers, made at first
+// use. The multipliers z of a stage that satisfy the hidden constraint are those of the right-hand
+// side of the ODE form; SplitKkt solves for the z that lead onto the constraint at the next stage.
 
 #include <momenta/dae/form/natural_sizes.h>
 #include <momenta/dae/kkt/bearing_friction.h>
@@ -31,7 +30,7 @@ class HalfExplicitParts : public HalfExplicit {
   struct Work {
     Work(const Mechanism& mechanism, std::vector<double> compliance);
     std::unique_ptr<Evaluation<double>> e;
-    std::unique_ptr<Evaluation<double>> ahead;  ///< where a stage leads
+    std::unique_ptr<Evaluation<double>> ahead;  ///< placed where a stage leads
     std::unique_ptr<LoopSolver> solver;         ///< null without loops
     std::unique_ptr<BearingFriction> friction;  ///< null without bearings; pushed to both
     SplitKkt kkt;
@@ -42,13 +41,13 @@ class HalfExplicitParts : public HalfExplicit {
 
   Work& work();
   bool failed(std::string sentence);
-  /// Finds the friction of bearings at (t, q, u), where there are such.
+  /// Finds the friction of bearings, if any, at (t, q, u).
   bool rub(double t, const double* q, const double* u);
-  /// Φ(q, t) = 0 by q + δ, M δ + Φ_qᵀν = 0, Newton's method.
+  /// Newton's method for Φ(q, t) = 0 by q + δ, M δ + Φ_qᵀν = 0.
   bool meet_positions(double t, double* q, const NaturalSizes& natural);
   /// Φ_q v + Φ_t = 0 by M v + Φ_qᵀν = M v_before, linear.
   bool meet_velocities(double t, const double* q, double* v);
-  /// Copies z as what faded rows keep, for a solution that writes into z.
+  /// Copies z, which faded rows keep, for a solution that overwrites it.
   const double* centre(const double* z);
 
   const Mechanism& system_;

@@ -9,8 +9,8 @@
 namespace momenta {
 namespace {
 
-/// How weak a pivot of Φ_q M⁻¹ Φ_qᵀ may be, relative to its group's scale: what rounding leaves of
-/// rows that depend on others must ask for no multiplier.
+/// Least pivot of Φ_q M⁻¹ Φ_qᵀ relative to its group's scale: rounding in dependent rows must ask
+/// for no multiplier.
 constexpr double dependent_rows = 1e-10;
 
 class MechanismPlace final : public HamiltonianPlace {

@@ -44,7 +44,7 @@ void ImpulseGauge::reset(double t, double* y, double* ydot) {
   w.e->place(t, y);
   w.e->joint_rates(y, ydot, w.u.data());
   w.e->move(w.u.data());
-  // (8) without σ; what it lacks is Φ̇_qᵀσ.
+  // (8) without Φ̇_qᵀσ.
   w.e->momenta(nullptr, w.p.data());
   w.e->momentum_rates(y, w.u.data(), nullptr, 0, pdot);
   w.e->constraint_forces(sigma, w.p.data());

@@ -13,7 +13,7 @@ namespace momenta {
 
 class ImpulseGauge : public GaugeSymmetry {
  public:
-  /// Of a form with that layout and gauge; `natural` is kept by reference.
+  /// Keeps `natural` by reference.
   ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge,
                const NaturalSizes& natural);
 

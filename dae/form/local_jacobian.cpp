@@ -58,7 +58,7 @@ class DaeForm::Local final : public LocalOfSecondOrder {
   }
 
   DaeForm& form_;
-  bool in_time_;  ///< whether what is zero now may not be later
+  bool in_time_;  ///< whether a zero may become nonzero in time
   DaeScratch<LocalDual> s_;
   Cuts cuts_;
   LocalRows rows_;
@@ -78,8 +78,8 @@ const JacobianPattern& DaeForm::pattern() const {
   return pattern_;
 }
 
-/// Which unknowns a residual hangs on is told by its construction, at whatever state: that of the
-/// local matrix at the start.
+/// The pattern follows from how residuals are built, at any state: that of the local matrix at the
+/// start.
 void DaeForm::analyse_pattern() {
   const int n = size();
   pattern_ = {};

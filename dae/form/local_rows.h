@@ -16,28 +16,28 @@ namespace momenta {
 
 class LocalRows {
  public:
-  /// Of the residuals r (n) and the cuts of their evaluation. O(entries); allocates where the
-  /// pattern is another than before.
+  /// Takes the residuals r (n) and the cuts of their evaluation. O(entries); allocates where the
+  /// pattern changes.
   void take(const std::vector<LocalDual>& r, const Cuts& cuts);
 
   int size() const { return size_; }  ///< n + cuts
   const JacobianPattern& pattern() const { return pattern_; }
   const std::vector<double>& values() const { return values_; }
-  /// Counts the patterns so far.
+  /// Number of patterns so far.
   int version() const { return version_; }
 
-  /// Of ∂r/∂y, n × n. O(its entries, times the length of the ways)
+  /// Pattern of ∂r/∂y, n × n. O(its entries, times the length of the ways)
   JacobianPattern eliminated(int n) const;
 
  private:
   void analyse();
 
   int size_ = 0, version_ = 0;
-  std::vector<std::size_t> end_, end_before_;  ///< of each row's terms
+  std::vector<std::size_t> end_, end_before_;  ///< ends of each row's terms
   std::vector<int> at_, at_before_;
   std::vector<double> term_;
-  std::vector<std::size_t> place_;     ///< of each term among the values
-  std::vector<std::size_t> diagonal_;  ///< of the 1 in each row of z
+  std::vector<std::size_t> place_;     ///< places of terms in values_
+  std::vector<std::size_t> diagonal_;  ///< places of the 1 in each row of z
   JacobianPattern pattern_;
   std::vector<double> values_;
 };

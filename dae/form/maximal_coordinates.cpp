@@ -37,8 +37,8 @@ class MaximalCoordinates final : public AccelerationForm {
 
   SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
 
-  /// Trees too are solved by their joints' multipliers. The coordinates of a Lagrangian stand for
-  /// those of bodies: it has no joints, and this is `baumgarte`.
+  /// Trees too are solved by their joints' multipliers. A Lagrangian has no joints, and this is
+  /// `baumgarte`.
   bool rhs(double t, const double* y, double* ydot) override {
     if (mechanism_.scene().lagrangian) return AccelerationForm::rhs(t, y, ydot);
     const double *q = y, *u = y + mechanism_.nq();

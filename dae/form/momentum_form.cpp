@@ -21,7 +21,7 @@ MomentumForm::MomentumForm(std::string name, const Mechanism& mechanism, const F
   if (solutions_ > 1 && start.residue.size() > 0) not_closed_.assign(multipliers_.size(), 0.0);
   e_->place(start.t, start.q.data());
   sizes_.of_momenta(*e_, start, scale_.data() + mechanism.nq());
-  if (friction_) return;  // by λ and u̇, which momentum-index1 does not have
+  if (friction_) return;  // friction needs λ and u̇, which momentum-index1 lacks
   FormOptions equations = options;
   equations.gauge = leak() > 0 ? gauge_ : Gauge{};  // what happens after steps is not in f
   equations.beta = beta_;
@@ -76,8 +76,7 @@ bool MomentumForm::after_step(double t, double* y, bool& changed) {
   if (has_loops() && gauge_.kind == Gauge::Kind::reset) {
     if (!solve(t, q, p, nullptr)) return false;
     e_->place(t, q);
-    // p − Φ_qᵀσ and not M u, its equal: one rounding of p instead of those of the way to u and
-    // back.
+    // p − Φ_qᵀσ equals M u, but is rounded once, not on the way to u and back.
     e_->constraint_forces(multipliers_.data(), work_.data());
     for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= work_[i];
     e_->move(u_.data());

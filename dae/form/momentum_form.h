@@ -1,12 +1,12 @@
 #pragma once
-// What the ODE forms in q, p share: (7), (8), and the gauge and the correction of positions after
-// steps. (7) is solved once or, with a softened solver, repeatedly, each time around the
-// multipliers just found.
+// Base of the ODE forms in q, p: (7), (8), the gauge, and corrections of positions after steps. (7)
+// is solved once or, with a softened solver, repeatedly, each time around the multipliers just
+// found.
 //
 // Where redundant equations contradict each other (Start::residue), a part w of βΦ is that of no
 // velocity, wᵀ Φ_q = 0: each of the k solutions adds the same α w to σ, and σ of one step's end as
-// σ₀ of the next would grow with the number of steps. That part is what the last of them added; the
-// next step begins with σ₀ = σ_k − k (σ_k − σ_{k−1}).
+// σ₀ of the next would grow with the number of steps. So the next step begins with σ₀ = σ_k − k
+// (σ_k − σ_{k−1}).
 
 #include <momenta/dae/form/ode_form.h>
 
@@ -49,7 +49,7 @@ class MomentumForm : public OdeForm {
 
   Gauge gauge_;
   double beta_;
-  int solutions_;  ///< of (7) in one evaluation, each around the σ of the one before
+  int solutions_;  ///< solutions of (7) per evaluation, each around the last σ
   bool corrects_ = false;
   bool reset_ = false;  ///< work_ and correction_ hold f after a reset
   std::vector<double> around_, place_;

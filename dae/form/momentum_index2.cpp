@@ -73,7 +73,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
     e.place(t, q);
     work.kkt.act_at(e);
     std::copy_n(p, work.r.size(), work.r.data());
-    if (mechanism_.plan().drives || mechanism_.scene().lagrangian) {  // less p at rest
+    if (mechanism_.plan().drives || mechanism_.scene().lagrangian) {  // subtracts p at rest
       e.move(nullptr);
       e.momenta(nullptr, work.delta.data());
       for (std::size_t i = 0; i < work.r.size(); ++i) work.r[i] -= work.delta[i];

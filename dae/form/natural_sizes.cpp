@@ -9,22 +9,22 @@
 namespace momenta {
 namespace {
 
-/// Where powers of ten change: beside round numbers and their roots. 1 m is 0.25 to 2.5 m, 1/s is
-/// 1.36 to 13.6/s.
+/// Bounds of powers of ten, off round numbers and their roots: 1 m is 0.25 to 2.5 m, 1/s is 1.36 to
+/// 13.6/s.
 constexpr double least_length = 0.2512, least_rate = 1.36;
-/// Of the way that an unnoticed rate goes in a run.
+/// Part of a natural displacement that a noticed rate covers in a run.
 constexpr double unnoticed = 1e-3;
-/// Of 2T.
+/// Least energy of the size of a momentum, relative to 2T.
 constexpr double rounded = 1e-9;
 
-/// By rate u [m or rad].
+/// Natural displacement of each rate u [m or rad].
 Eigen::VectorXd ways(const Mechanism& mechanism) {
   Eigen::VectorXd way = rate_units(mechanism);
   for (double& x : way) x = power_of_ten(x, least_length);
   return way;
 }
 
-/// The same, of slides no less than how far the farthest starts.
+/// Natural displacements, of slides no less than the farthest start of one.
 Eigen::VectorXd reaches(const Mechanism& mechanism) {
   Eigen::VectorXd way = ways(mechanism);
   const auto slides = [&](auto&& act) {
@@ -40,8 +40,8 @@ Eigen::VectorXd reaches(const Mechanism& mechanism) {
   return way;
 }
 
-/// The larger of √a, a the accelerations that loops cause, without loops all, and of rates, in
-/// those lengths; where nothing stirs ten in the time a run of the scene takes.
+/// The larger of √a and rates, in reaches(); a: the accelerations that loops cause, without loops
+/// all. Where nothing moves: ten per run of the scene.
 double own_rate(const Mechanism& mechanism, const Start& start) {
   Eigen::VectorXd acceleration = start.udot;
   if (mechanism.m() > 0) {
@@ -63,7 +63,7 @@ double own_rate(const Mechanism& mechanism, const Start& start) {
   return end > 0 ? 10 / end : 1;
 }
 
-/// ρ: of weight √(g/ℓ), whatever the start; without weight the mechanism's own, as far as a run
+/// ρ: √(g/ℓ) under weight, whatever the start; else the mechanism's own rate, as far as a run
 /// notices it.
 double natural_rate(const Mechanism& mechanism, const Start& start) {
   const Scene& scene = mechanism.scene();

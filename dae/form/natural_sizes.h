@@ -11,24 +11,23 @@
 
 namespace momenta {
 
-/// The 10^k for which x / 10^k is at least `least`, and less than ten times that.
+/// 10^k with least ≤ x / 10^k < 10 least.
 double power_of_ten(double x, double least);
 
 struct NaturalSizes {
   NaturalSizes(const Mechanism& mechanism, const Start& start);
 
-  /// p (nv) where `e` is placed at the start: M_ii times that of u. The momentum of a joint that
-  /// moves no mass, such as that of a massless coupler, consists of loop impulses alone, which are
-  /// as large as those of other joints; there it is that of the joint that moves the most. Where
-  /// bodies pass by fast, v × p is rounded by a part of the kinetic energy 2T: no less than what
-  /// that makes of a joint's momentum.
+  /// Sizes of p (nv) where `e` is placed at the start: M_ii times that of u. A joint that moves no
+  /// mass, such as a massless coupler's, has loop impulses alone for momentum, as large as those of
+  /// other joints: it takes the size of the joint that moves the most. Where bodies pass by fast,
+  /// rounding of v × p, a part of 2T, sets a least size.
   void of_momenta(Evaluation<double>& e, const Start& start, double* sizes) const;
 
-  /// The longest span of a run that its first steps are parts of [s]: DaeSystem::horizon()
+  /// DaeSystem::horizon() [s]
   double horizon() const { return 1e6 / rate; }
 
   double rate = 1;             ///< ρ [1/s]
-  std::vector<double> q;       ///< nq; of components of quaternions 1
+  std::vector<double> q;       ///< nq; 1 for components of quaternions
   std::vector<double> way, u;  ///< nv: a length of the scene or a radian, and that times ρ
 };
 

@@ -8,8 +8,7 @@
 namespace momenta {
 namespace {
 
-/// Entries of a dense matrix that are solved with in the time of one of a local matrix, whose
-/// factors fill up, one after another in memory.
+/// Entries of a dense matrix solved in the time of one of a local matrix, whose factors fill in.
 constexpr double dense_entries = 3;
 
 }  // namespace
@@ -75,7 +74,7 @@ void OdeForm::look_on(bool looking) {
   }
   if (!looking && --looking_ == 0) {
     looked_ += solutions - before_looking_;
-    multipliers_ = kept_;  // what pivots are centred on
+    multipliers_ = kept_;  // restores what faded rows keep
   }
 }
 

@@ -43,8 +43,8 @@ namespace {
 constexpr int most_corrections = 12;
 constexpr double last_correction = 1e-8;  // [rad or lengths]: its square is rounding
 constexpr double off_tangent = 0.3;       // [rad or lengths]: the second correction, at most
-constexpr double worst_growth = 1.5;      // of dependent coordinates over independent ones
-constexpr double least_turn = 1e-6;       // of rates, in their sizes
+constexpr double worst_growth = 1.5;      // dependent coordinates over independent ones
+constexpr double least_turn = 1e-6;       // least change of rates, in their sizes
 constexpr double opened = 1e-6;  // Φ of rows that ought to follow from the others, in units
 
 class Partitioned final : public OdeForm {
@@ -82,9 +82,8 @@ class Partitioned final : public OdeForm {
 
   bool momentum_like() const override { return false; }
   long partitions() const override { return partitions_; }
-  /// Where drives move all there is, one number that stays zero.
+  /// At least one number, which stays zero where drives move everything.
   int size() const override { return std::max(1, 2 * freedom()); }
-  /// By the partition at hand.
   double scale(int i) const override {
     const int n = freedom();
     if (n == 0) return 1;
@@ -146,7 +145,7 @@ class Partitioned final : public OdeForm {
     centre_ = multipliers_;
   }
   SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
-  /// A partition, and factors at the start of a step, are no numbers to be listed.
+  /// Partition and factors are not saved.
   bool can_be_put_down() const override { return false; }
 
   bool read_coordinates(double t, const double* y, Eigen::VectorXd& q) override {
@@ -164,7 +163,7 @@ class Partitioned final : public OdeForm {
   }
 
  private:
-  /// As many independent coordinates as rates.
+  /// Refuses equations of rates alone: independent coordinates are as many as rates.
   static void expect_positions(const Mechanism& mechanism) {
     for (std::size_t i = 0; i < mechanism.nonholonomic().size(); ++i)
       if (mechanism.nonholonomic()[i])
@@ -173,7 +172,7 @@ class Partitioned final : public OdeForm {
                              ") ties rates and no coordinates, so that no coordinate follows from "
                              "the others for it; expected another form");
   }
-  /// Of coordinates; the same as that of rates where there are no balls.
+  /// Split of coordinates; that of rates where there are no balls.
   CoordinateSplit& positions() const { return positions_ ? *positions_ : *rates_; }
   int freedom() const { return static_cast<int>(rates_->independent().size()); }
   int independent_q(int k) const { return positions().independent()[static_cast<std::size_t>(k)]; }
@@ -186,7 +185,7 @@ class Partitioned final : public OdeForm {
     }
   }
 
-  /// Chooses at the placed q_, and factorises there.
+  /// Chooses the partition at the placed q_, and factorises there.
   bool choose(double t) {
     e_->place(t, q_.data());
     evaluate_jacobian();
@@ -206,7 +205,7 @@ class Partitioned final : public OdeForm {
     return true;
   }
 
-  /// Of dependent coordinates and rates, at the last evaluate_jacobian() and at_start_'s factors.
+  /// Growth of dependent coordinates and rates, at the last evaluate_jacobian().
   double growth() {
     const double of_positions = at_start_->growth(values_);
     if (!of_rates_) return of_positions;
@@ -215,11 +214,10 @@ class Partitioned final : public OdeForm {
     return of_rates <= of_positions ? of_positions : of_rates;
   }
 
-  /// q_ and u_ of the state. Starts at the step's start whatever was evaluated before: a rejected
-  /// step leaves no trace.
-  /// From the step's start. A time before it, of a late stage, lies within the last step, whose end
-  /// may be too far: from that one's start then; there, and for samples, in parts if it must be. A
-  /// stage of the step under way that is too far asks for a shorter step.
+  /// Finds q_ and u_ of the state from the step's start, whatever was evaluated before: a rejected
+  /// step leaves no trace. A time before it, of a late stage, lies within the last step: if that
+  /// one's end is too far, it is reached from that step's start. There, and for samples, the way
+  /// may be taken in parts; a stage of the step under way that is too far asks for a shorter step.
   bool close(double t, const double* y, bool is_sample = false) {
     if (close_from(start_q_, *at_start_, t, y)) return true;
     const bool within_last = t < start_t_;
@@ -266,7 +264,7 @@ class Partitioned final : public OdeForm {
       before = length;
     }
     e_->place(t, q_.data());
-    SplitFactor* factor = inside_.get();  // within last_correction of q_
+    SplitFactor* factor = inside_.get();  // factorised within last_correction of q_
     if (of_rates_) {
       e_->constraint_entries(rate_values_.data());
       factor = of_rates_.get();
@@ -274,7 +272,7 @@ class Partitioned final : public OdeForm {
     }
     u_.setZero();
     for (int k = 0; k < freedom(); ++k) u_[independent_u(k)] = y[freedom() + k];
-    for (int pass = 0; pass < 2; ++pass) {  // the second takes the factor's distance off
+    for (int pass = 0; pass < 2; ++pass) {  // the second corrects for the factor's distance
       e_->move(u_.data());
       e_->velocities(rate_.data());
       factor->solve(rate_, correction_u_);
@@ -297,7 +295,7 @@ class Partitioned final : public OdeForm {
     start_udot_ = udot_;
     return true;
   }
-  /// Whether u_ is not where the accelerations lead from the step's start, by half its size.
+  /// Whether u_ is off, by half its size, where accelerations lead from the step's start.
   bool turned_round(double t) const {
     if (freedom() > 0 || start_u_.size() == 0 || !(t > start_t_)) return false;
     double off = 0, size = 0;
@@ -320,21 +318,21 @@ class Partitioned final : public OdeForm {
            solver_failed(t, q_.data(), "the solution of (3)");
   }
 
-  /// At the placed q_.
+  /// Evaluates at the placed q_.
   void evaluate_jacobian() { jacobian_.evaluate(*e_, q_, rate_values_, values_); }
 
   CoordinateJacobian jacobian_;
   std::unique_ptr<CoordinateSplit> rates_, positions_;
   std::unique_ptr<SplitFactor> at_start_, inside_, of_rates_;
-  int rank_ = -1;  ///< of Φ_q, from the start on
+  int rank_ = -1;  ///< rank of Φ_q at the start
   double bound_ = worst_growth;
   long partitions_ = 0;
   Eigen::VectorXd start_q_, before_q_;  ///< at the step's start, and at the start of the one before
   double start_t_ = 0, before_t_ = 0;   ///< their times [s]
-  Eigen::VectorXd start_u_, start_udot_;  ///< there, where nothing is independent
+  Eigen::VectorXd start_u_, start_udot_;  ///< at the step's start, where nothing is independent
   Eigen::VectorXd q_, u_, qdot_, udot_;
   Eigen::VectorXd phi_, rate_, correction_q_, correction_u_;
-  Eigen::VectorXd unit_;  ///< of phi_
+  Eigen::VectorXd unit_;  ///< units of phi_
   std::vector<double> rate_values_, values_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What an ODE form's f solves: the equations of a DAE form of index 1 in the same q and p, or q and
+// The equations that an ODE form's f solves, of a DAE form of index 1 in the same q and p, or q and
 // u, with its multipliers as unknowns,
 //
 //   F(t, (q, p, σ), (q̇, ṗ)) = 0      or      F(t, (q, u, λ), (q̇, u̇)) = 0.
@@ -16,13 +16,13 @@ namespace momenta {
 class SolvedEquations final : public LocalJacobian {
  public:
   using Maker = std::function<std::unique_ptr<Form>()>;
-  /// `make` a DaeForm, called when a matrix is first asked for; `multipliers`, of the last
-  /// right-hand side, is kept by reference.
+  /// `make`: makes the DaeForm at first use; `multipliers`, of the last right-hand side: kept by
+  /// reference.
   SolvedEquations(Maker make, const std::vector<double>& multipliers)
       : make_(std::move(make)), multipliers_(multipliers) {}
 
   bool evaluate(double t, const double* y, const double* f, double c) override;
-  /// Before the first evaluation that at the start.
+  /// Before the first evaluation: the pattern at the start.
   const JacobianPattern& pattern() const override;
   const std::vector<double>& values() const override { return form_->local_jacobian().values(); }
   int version() const override { return form_->local_jacobian().version(); }

@@ -121,7 +121,7 @@ bool BearingFriction::iterate() {
   }
   y_.setZero();
   double before = std::numeric_limits<double>::infinity();
-  // A change that no longer shrinks is rounding: each is less than the one before in the norm of x.
+  // In the norm of x changes shrink until they are rounding.
   for (;;) {
     F_ = F0_;
     F_.noalias() += dF_ * y_;
@@ -150,7 +150,7 @@ std::string BearingFriction::undetermined(double t, const double* q, const doubl
   for (std::size_t i = 0; i < other.size(); ++i) other[i] += unique.idle()[i];
   load(t, q, u, other.data(), F_);
   largest = std::max(largest, F_.cwiseAbs().maxCoeff());
-  constexpr double rounding = 1e-6;  // over weak pivots
+  constexpr double rounding = 1e-6;  // magnified by weak pivots
   for (std::size_t i = 0; i < bearings_.size(); ++i)
     for (Eigen::Index k = 0; k < 4; ++k)
       if (const auto at = 4 * static_cast<Eigen::Index>(i) + k;

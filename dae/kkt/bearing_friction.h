@@ -29,31 +29,31 @@ class BearingFriction {
  public:
   explicit BearingFriction(const Mechanism& mechanism);
 
-  /// Solves at (t, q, u). False where there is no such friction: failure(). Cost: a solution of (3)
+  /// Finds the friction at (t, q, u). False where there is none: failure(). Cost: a solution of (3)
   /// for each bearing that slides, and one more. No allocation.
   bool at(double t, const double* q, const double* u);
-  /// τ (nv) of the last at(), zero before: always at the same place.
+  /// τ (nv) of the last at(), zero before; the pointer stays valid.
   const double* forces() const { return forces_.data(); }
   /// τ·u ≤ 0 [W].
   double power(const double* u) const;
-  /// One sentence.
+  /// Why at() failed, in one sentence.
   const std::string& failure() const { return failure_; }
 
-  /// The name of a joint in whose bearing the force is not unique at (t, q, u), as loop equations
-  /// depend on each other there; empty: in all it is.
+  /// Name of a joint in whose bearing the force is not unique at (t, q, u), as loop equations
+  /// depend on each other; empty: none.
   std::string undetermined(double t, const double* q, const double* u);
 
  private:
   struct Bearing {
     std::string name;
     int u;
-    double arm;  ///< of N μ: r, or 1
+    double arm;  ///< lever of N μ: r, or 1
     BearingSpec spec;
   };
 
-  /// u̇ and λ with the forces `tau`, and F.
+  /// Finds u̇ and λ under the forces `tau`, and F.
   bool solve(double t, const double* q, const double* u, const double* tau, Eigen::VectorXd& F);
-  /// F of `udot_` and these multipliers.
+  /// F from `udot_` and `lambda`.
   void load(double t, const double* q, const double* u, const double* lambda, Eigen::VectorXd& F);
   /// The fixed point y of the bearings that slide.
   bool iterate();
@@ -73,8 +73,8 @@ class BearingFriction {
 /// The friction of a mechanism's bearings; null where it has none.
 std::unique_ptr<BearingFriction> bearing_friction(const Mechanism& mechanism);
 
-/// u̇ (nv) and λ (m) of (3) with that friction, which may be null; `solver` null without loops. The
-/// cause of a failure is the solver's, or friction's where that has one.
+/// u̇ (nv) and λ (m) of (3) with `friction`, which may be null; `solver` null without loops. The
+/// cause of a failure is friction's, if it has one, or the solver's.
 bool rubbed_accelerations(BearingFriction* friction, Evaluation<double>& e, LoopSolver* solver,
                           double t, const double* q, const double* u, double* udot, double* lambda);
 

@@ -1,5 +1,5 @@
 // Deep trees: (7) by the equations of its bodies (body_matrix.h), whose entries grow like the
-// bodies, factorised by KLU (klu_solver.h). Poses are not filtered: faded rows are not told.
+// bodies, factorised by KLU (klu_solver.h). Pivots are not filtered, faded rows not known.
 
 #include <momenta/dae/body_matrix.h>
 #include <momenta/dae/factor/axis_scale.h>

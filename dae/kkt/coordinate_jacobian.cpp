@@ -53,7 +53,7 @@ void CoordinateJacobian::evaluate(Evaluation<double>& e, const Eigen::VectorXd& 
     values = of_rates;
     return;
   }
-  // One column of N for each coordinate of a ball, of all balls at once.
+  // Column c of N, of all balls at once.
   for (int c = 0; c < 7; ++c) {
     qdot_.setZero();
     for (const Ball& b : balls_)

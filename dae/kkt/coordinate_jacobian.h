@@ -17,7 +17,7 @@ class CoordinateJacobian {
   bool has_balls() const { return !balls_.empty(); }
   int balls() const { return static_cast<int>(balls_.size()); }
   int rows() const { return m_ + balls(); }
-  const std::vector<KktPattern::Entry>& rate_pattern() const { return rate_pattern_; }  ///< of Φ_q
+  const std::vector<KktPattern::Entry>& rate_pattern() const { return rate_pattern_; }  ///< Φ_q
   const std::vector<KktPattern::Entry>& pattern() const { return pattern_; }
   /// Weights of coordinates (nq) from those of rates (nv): ω is twice the rate of a quaternion
   /// across it.

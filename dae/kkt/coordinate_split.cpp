@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-constexpr double regular_pivot = 1e-9;  // of pivots, against the largest
+constexpr double regular_pivot = 1e-9;  // relative to the largest pivot
 constexpr int dense_limit = 40;         // rows up to which dense LU is faster than KLU
 
 }  // namespace

@@ -50,7 +50,7 @@ class SplitFactor {
   SplitFactor(const SplitFactor&) = delete;
   SplitFactor& operator=(const SplitFactor&) = delete;
 
-  /// From the entries of A; false where the block is singular.
+  /// Factorises from the entries of A; false where the block is singular.
   bool factor(const std::vector<double>& values);
   /// x (rank) ← A_d⁻¹ of the chosen rows of `right` (rows).
   void solve(const Eigen::VectorXd& right, Eigen::VectorXd& x);
@@ -60,7 +60,7 @@ class SplitFactor {
  private:
   const CoordinateSplit& split_;
   bool sparse_;
-  std::vector<int> place_;  ///< of each entry in the block's values, or −1
+  std::vector<int> place_;  ///< place of each entry in the block's values, or −1
   Eigen::MatrixXd block_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   Eigen::VectorXd right_, column_, slopes_;

@@ -36,27 +36,25 @@ class Kkt {
   /// Rows of Φ whose pivots faded at the last factor(): redundant or singular at this pose. KLU
   /// cannot tell them, and lists none.
   const std::vector<int>& faded_rows() const { return faded_rows_; }
-  /// The number of faded rows.
   int faded() const { return static_cast<int>(faded_rows_.size()); }
   /// The least pivot at the last factor() of a row of Φ that has not faded, relative to the scale
   /// of its group; 1 where none is known.
   double weakest() const { return weakest_; }
-  /// Number of calls of factor() so far.
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
   int singular_joint() const { return singular_joint_; }
 
  protected:
-  std::vector<int> faded_rows_;         ///< faded_rows()
-  const double* compliance_ = nullptr;  ///< soften()
-  double weakest_ = 1;                  ///< weakest()
-  long factorizations_ = 0;             ///< factorizations()
-  int singular_joint_ = -1;             ///< singular_joint()
+  std::vector<int> faded_rows_;
+  const double* compliance_ = nullptr;
+  double weakest_ = 1;
+  long factorizations_ = 0;
+  int singular_joint_ = -1;
 };
 
-/// A solver of (7): dense or sparse by size, or as the options of the mechanism say. A sparse one
-/// takes the equations of the bodies where the tree is deep, and KLU where joints have no inertia
-/// before their loops close. Needs loops (m > 0).
+/// A solver of (7): dense or sparse by size, or as the mechanism's options say. A sparse one takes
+/// the bodies' equations in deep trees, and KLU where joints have no inertia before their loops
+/// close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
 /// Whether the matrix of make_kkt() has a pivot for each row of Φ, which can fade and be reported:
 /// KLU has none.
@@ -67,12 +65,12 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
 /// For large systems: L D Lᵀ of the matrix of the joints' equations, with the pivots of σ filtered;
 /// O(fill).
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
-/// Where joints have no inertia before their loops close: LU of that matrix; no pivot fades.
+/// LU of the joints' equations, where joints have no inertia before loops close; no pivot fades.
 std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);
 /// For deep trees: L D Lᵀ of the matrix of the bodies' equations by fronts, with the pivots of σ
 /// filtered; O(Σ over the bodies of the squared number of open equations).
 std::unique_ptr<Kkt> make_front_kkt(const Mechanism& mechanism);
-/// For deep trees where joints have no inertia before their loops close: LU of that matrix; no
+/// LU of the bodies' equations, for deep trees where joints have no inertia before loops close; no
 /// pivot fades.
 std::unique_ptr<Kkt> make_body_kkt(const Mechanism& mechanism);
 

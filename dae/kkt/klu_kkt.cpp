@@ -46,7 +46,7 @@ class KluKkt final : public Kkt {
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
     const auto& inertia = diagonal_of_mass_.of(mass_);
-    int exponent = 0;  // of two: nothing is rounded
+    int exponent = 0;  // a power of two: nothing is rounded
     std::frexp(*std::max_element(inertia.begin(), inertia.end()), &exponent);
     per_unit_ = std::ldexp(1.0, -exponent);
     for (std::size_t i = 0; i < mass_.size(); ++i) solver_.matrix().set(i, mass_[i] * per_unit_);

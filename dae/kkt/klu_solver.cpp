@@ -6,9 +6,9 @@
 namespace momenta {
 namespace {
 
-constexpr int most_refinements = 3;    // one does, two where a pivot is as small as ε
-constexpr double at_rounding = 1e-11;  // of the residual, row by row
-constexpr double most_growth = 1e3;    // of the entries, beside that on pivots just chosen
+constexpr int most_refinements = 3;    // one suffices, two where a pivot is as small as ε
+constexpr double at_rounding = 1e-11;  // relative residual of a row
+constexpr double most_growth = 1e3;    // growth of entries, relative to that on fresh pivots
 
 }  // namespace
 
@@ -79,9 +79,9 @@ bool KluSolver::solve(double* x, const double* centre, bool is_model) {
   return true;
 }
 
-/// Solved, then recentred on the σ just found as long as that changes what the rows of Φ are off by
-/// to a tenth: bias ε/W goes to (ε/W)², (ε/W)³ … on regular rows, however weak in a long mechanism;
-/// that of a row lost in rounding stays what it is, and it is left alone. Each time refined.
+/// Solves, then recentres on the σ just found as long as that reduces the error of the rows of Φ to
+/// a tenth: the bias ε/W becomes (ε/W)², (ε/W)³ … on regular rows, however weak in a long
+/// mechanism; that of a row lost in rounding stays. Every solution is refined.
 bool KluSolver::attempt(const double* centre, bool is_model) {
   constexpr int most_recentrings = 5;
   constexpr double negligible = 1e-14, regular = 0.1;

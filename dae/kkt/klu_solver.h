@@ -31,7 +31,8 @@ class KluSolver {
 
   /// To be filled before factor(), but for the diagonal of σ.
   SymmetricMatrix& matrix() { return matrix_; }
-  /// With ε (soft). False where an entry is not finite or no pivot is found: singular_column().
+  /// Factorises with ε (soft). False where an entry is not finite or no pivot is found:
+  /// singular_column().
   bool factor(const std::vector<double>& epsilon);
   /// x (size) ← A⁻¹ x; `centre` (soft, null: zero). With `is_model` ε is part of the equations, and
   /// is not refined away. False where the residual does not reach rounding.
@@ -40,7 +41,7 @@ class KluSolver {
   int singular_column() const { return singular_; }
   /// The smallest pivot over the largest, of the last factor(); 0 where there is none.
   double pivot_ratio();
-  /// Of L and U.
+  /// Nonzeros of L and U.
   long entries() const { return numeric_ ? numeric_->lnz + numeric_->unz : 0; }
   /// Pivots chosen so far.
   long choices() const { return choices_; }

@@ -12,8 +12,8 @@
 namespace momenta {
 namespace {
 
-/// Numbers of A, zeros among them, and columns up to which it is treated densely: damped, the
-/// dense way costs their cube, however few rows there are.
+/// Entries of A, zeros included, and columns up to which it is dense: damped, the dense way costs
+/// the cube of columns, however few rows there are.
 constexpr double most_dense = 1e5;
 constexpr int most_dense_columns = 400;
 
@@ -102,7 +102,7 @@ struct LeastNorm::Sparse {
   std::vector<Long> start, index;
   std::vector<double> value;
   std::vector<double> factored;  ///< the values of A in the factors
-  double factored_damping = 0;   ///< and the λ
+  double factored_damping = 0;   ///< the λ of the factors
   Factors* factors = nullptr;
   long factorizations = 0;
 };

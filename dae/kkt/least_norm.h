@@ -26,17 +26,17 @@ class LeastNorm {
   LeastNorm(const LeastNorm&) = delete;
   LeastNorm& operator=(const LeastNorm&) = delete;
 
-  /// From the entries' values; `damping` λ, 0: none. Sparse, the same once more takes no time.
+  /// Factorises A from its entries; `damping` λ, 0: none. Sparse A: free where neither has changed.
   void factor(const std::vector<double>& values, double damping = 0);
   Eigen::VectorXd solve(const Eigen::VectorXd& b);
   /// A x
   Eigen::VectorXd product(const std::vector<double>& values, const Eigen::VectorXd& x) const;
 
-  /// Which rows of A follow from the others, and how many do not; `least`: as of loop_rank(), of
-  /// dense ones.
+  /// Rows of A that follow from the others, and the number that do not; `least`, for dense A: see
+  /// loop_rank().
   LoopRank judge(const std::vector<double>& values, Judged judged = Judged::singular_values,
                  double least = 0);
-  /// How many there were, sparse ones.
+  /// Number of sparse factorisations.
   long factorizations() const;
   bool is_dense() const { return sparse_ == nullptr; }
 

@@ -1,10 +1,11 @@
 #pragma once
-// Which loop equations are redundant at a pose: one verdict for all that ask. Judged on a matrix
+// Redundant loop equations at a pose: one verdict for all that ask. Judged on a matrix
 // without units and without masses, for it is a matter of geometry,
 //
 //   A = D⁻¹ Φ_q C,
 //
-// D and C the units of an assembly (assembly/units.h): lengths in lengths of the scene, angles in
+// D and C the units of equations and rates (loop_units.h): lengths in lengths of the scene, angles
+// in
 // radians. Turning the axes of a loop, its place in the scene and the order of the loops change no
 // singular value. Those above
 //
@@ -41,7 +42,7 @@ struct ScaledJacobian {
   Eigen::MatrixXd a;           ///< A, m × nv
   Eigen::VectorXd row_factor;  ///< D⁻¹, m
 };
-/// At the configuration placed in `e`. O(m nv)
+/// A at the configuration placed in `e`. O(m nv)
 ScaledJacobian scaled_jacobian(const Mechanism& mechanism, Evaluation<double>& e);
 
 struct RankAndIdle {
@@ -56,26 +57,25 @@ struct RankAndIdle {
 RankAndIdle rank_and_idle(const Eigen::MatrixXd& a, double largest = 0, int rank = -1,
                           double least = 0);
 
-/// The reduced basis of the columns of `left`: each has a row of its own where it is 1 and all
-/// others are 0. Rows of `first` are taken before others, later ones before earlier. Returns these
-/// rows, column by column.
+/// Reduces the columns of `left`: each has a row of its own where it is 1 and all others are 0.
+/// Rows of `first` are taken before others, later ones before earlier. Returns these rows, by
+/// column.
 std::vector<int> reduce(Eigen::MatrixXd& left, const std::vector<int>& first = {});
 
 struct LoopRank {
   int rank = 0;
   double kept = 0, dropped = 0;     ///< as of RankAndIdle; 0 where singular values are not known
-  Eigen::VectorXd singular_values;  ///< of A, descending; empty: not known
+  Eigen::VectorXd singular_values;  ///< singular values of A, descending; empty: not known
   std::vector<int> dependent;       ///< rows that follow from the others, ascending
 };
-/// What is asked for: singular values cost some ten times as much as to see that rows are far from
-/// dependent.
+/// Judgement asked for: singular values cost some ten times as much as to see that rows are far
+/// from dependent.
 enum class Judged { singular_values, dependence };
 
-/// The verdict where `e` is placed: LeastNorm::judge() of A. Up to 10⁵ numbers of A by singular
-/// values; of more, and where dependence alone is asked for and is far away, by the pivots of a QR
-/// factorisation of Aᵀ, which far from the border tell the same. Where a number of A is not finite
-/// nothing is known: rank 0, no dependent rows. `least`: a part of the largest singular value that
-/// others have to exceed, where it is more than rank_tolerance.
+/// LeastNorm::judge() of A where `e` is placed: by singular values up to 10⁵ numbers of A; beyond,
+/// or where dependence alone is asked for and is far away, by pivots of a QR factorisation of Aᵀ,
+/// which agree far from the border. Rank 0, no dependent rows, where A is not finite. `least`: part
+/// of the largest singular value that others have to exceed, if more than rank_tolerance.
 LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e,
                    Judged judged = Judged::singular_values, double least = 0);
 

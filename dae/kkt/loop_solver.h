@@ -1,6 +1,6 @@
 #pragma once
-// What the forms ask of a mechanism with loops, whatever solves it: the right-hand sides of (7)-(8)
-// and (3), and corrections of positions and velocities in the mass metric.
+// The forms' interface to mechanisms with loops: the right-hand sides of (7)-(8) and (3), and
+// corrections of positions and velocities in the mass metric.
 //
 //   sweeps   the loops' impulses are eliminated inside the recursion           (dae/sweeps)
 //   sparse   LDLᵀ of the assembled matrix of (7), or KLU            (sparse_kkt.cpp, klu_kkt.cpp)
@@ -20,15 +20,15 @@ class LoopSolver {
  public:
   virtual ~LoopSolver() = default;
 
-  /// From now on momentum() solves Φ_q u = −Φ_t − βΦ in the second row of (7), β in 1/s.
+  /// Lets momentum() solve Φ_q u = −Φ_t − βΦ in the second row of (7), β in 1/s.
   void stabilise(double beta) { beta_ = beta; }
-  /// From now on momentum() and acceleration() solve (M + Φ_qᵀ α Φ_q) x = r − Φ_qᵀ(centre − α g)
-  /// instead of their two rows, α⁻¹ the compliance (m) by row, alike in a group of rows
+  /// Lets momentum() and acceleration() solve (M + Φ_qᵀ α Φ_q) x = r − Φ_qᵀ(centre − α g) instead
+  /// of their two rows, α⁻¹ the compliance (m) by row, alike in a group of rows
   /// (Mechanism::row_groups); multipliers are centre + α(Φ_q x − g). `fade` is ignored.
   virtual void soften(std::vector<double> compliance) = 0;
 
-  /// From now on momentum() adds τ (nv) to ṗ and acceleration() to the joints' forces; null: none.
-  /// Kept by reference. MaximalSolver does not take it. @throws std::logic_error there
+  /// Sets τ (nv) that momentum() adds to ṗ and acceleration() to the joints' forces; null: none.
+  /// Kept by reference. @throws std::logic_error by MaximalSolver
   virtual void push(const double* tau) { pushed_ = tau; }
 
   /// u (nv) and σ (m) of (7) from p (nv) at (t, q). `centre` (m) null: zero. With `pdot` not null
@@ -38,17 +38,16 @@ class LoopSolver {
   /// u̇ (nv) and λ (m) of (3) with Φ̈ + 2α Φ̇ + β² Φ = 0.
   virtual bool acceleration(double t, const double* q, const double* u, const double* centre,
                             double alpha, double beta, double* udot, double* lambda) = 0;
-  /// u (nv) of M u + Φ_qᵀσ = p, Φ_q u = 0, where nothing is prescribed: what of a momentum moves.
+  /// u (nv) of M u + Φ_qᵀσ = p, Φ_q u = 0, with nothing prescribed.
   virtual bool free_velocity(double t, const double* q, const double* p, double* u) = 0;
   /// δ (nv) of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.
   virtual bool position_correction(double t, const double* q, double* delta) = 0;
 
-  /// Systems solved so far.
   long solutions() const { return solutions_; }
   /// Rows of Φ that faded in the last solution: redundant or singular there.
   virtual const std::vector<int>& faded_rows() = 0;
-  /// Of the last solution: its weakest pivot that has not faded, relative to what the row's would
-  /// be without other loops, and how many have faded. KLU alone can't tell.
+  /// Weakest pivot of the last solution that has not faded, relative to its row's without other
+  /// loops, and the number that have faded. KLU alone can't tell.
   struct Pivots {
     double weakest = 1;
     int faded = 0;
@@ -66,7 +65,7 @@ class LoopSolver {
   int singular_joint_ = -1;
 };
 
-/// As the mechanism's plan says; needs loops. `e` is an evaluation of it, used as a workspace.
+/// The solver of the mechanism's plan; needs loops. `e`: an evaluation of it, used as a workspace.
 std::unique_ptr<LoopSolver> make_loop_solver(const Mechanism& mechanism, Evaluation<double>& e);
 
 }  // namespace momenta

@@ -13,7 +13,7 @@ bool is_angle(const std::string& unit) {
   return unit.empty() || unit == "1" || unit == "rad" || unit == "deg" || unit == "°";
 }
 
-/// Of the equation of a coupler: what its terms are by nature.
+/// Natural size of the terms of a coupler's equation.
 double size_of(const LoopSpec& l, const Tree& tree, const Eigen::VectorXd& rates) {
   double size = 0;
   for (std::size_t i = 0; i < l.joints.size(); ++i) {
@@ -24,7 +24,7 @@ double size_of(const LoopSpec& l, const Tree& tree, const Eigen::VectorXd& rates
   return size > 0 ? size : 1;
 }
 
-/// Of the way from the ground to each body.
+/// LoopUnits::rounding; `length` of the scene.
 double rounding_of(const Tree& tree, double length) {
   double rounding = 0;
   std::vector<double> reach;
@@ -40,8 +40,8 @@ double rounding_of(const Tree& tree, double length) {
   return rounding;
 }
 
-/// By row, of formulas the largest |∂Φ/∂u_j| times the unit of u_j where joints stand as they are
-/// given; zero of other rows and where that is no number. Empty: no formulas.
+/// By row of a formula the largest |∂Φ/∂u_j| times the unit of u_j at q0; zero for other rows and
+/// where it is not finite. Empty: no formulas.
 std::vector<double> sizes_of_equations(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
   std::set<std::string> names;
   for (const LoopSpec& l : mechanism.scene().loops)

@@ -139,7 +139,7 @@ class MaximalSolver final : public LoopSolver {
   /// h of a loop's row, zero but on the ways from its bodies to the ground.
   struct LoopColumn {
     std::vector<std::size_t> bodies;  ///< ascending
-    Columns h;                        ///< of all bodies
+    Columns h;                        ///< by body
   };
 
   LoopColumn column_of(const typename LoopModel<Space>::Loop& loop) const {
@@ -190,9 +190,9 @@ class MaximalSolver final : public LoopSolver {
     for (const std::size_t k : bodies) sum += Tree::inner(a[k], b[k]);
     return sum;
   }
-  /// What is natural for rows of axes, at the first configuration; and the rows that no joint can
-  /// move, those of a loop between welded bodies and the angle between slides. Their wrenches are
-  /// the joints' own to take: h is zero there but for rounding, which is no scale for anything.
+  /// Finds natural sizes of rows of axes at the first configuration, and the rows that no joint can
+  /// move: those of a loop between welded bodies, the angle between slides. Joints take their
+  /// wrenches: h is rounding there, no scale for anything.
   void measure(double t, const double* q) {
     std::vector<double> inertia(still_.size()), entries(mechanism_.constraint_pattern().size());
     natural_.resize(g_.size());
@@ -232,7 +232,7 @@ class MaximalSolver final : public LoopSolver {
     return solve(centre, u, sigma);
   }
 
-  /// x (nv) and s (m) of the wrenches f_ and of g_.
+  /// x (nv) and s (m) from the wrenches f_ and from g_.
   bool solve(const double* centre, double* x, double* s) {
     for (std::size_t k = n_; k-- > 0;) tree_.inward(k, f_.data(), h_.data());
     if (centre) take(centre);
@@ -268,7 +268,7 @@ class MaximalSolver final : public LoopSolver {
   std::vector<double> still_, torque_, prescribed_ = std::vector<double>(still_.size());
   Columns f_, h_;
   std::vector<double> d_, g_, phi_, nu_, natural_, compliance_;
-  std::vector<char> idle_;  ///< by row
+  std::vector<char> idle_;  ///< rows that no joint can move
   std::vector<LoopColumn> columns_;
 };
 

@@ -42,7 +42,7 @@ class MaximalTree {
   using Motion = typename Space::template Motion<double>;
   using Force = typename Space::template Force<double>;
   using Inertia = typename Space::template ArticulatedInertia<double>;
-  /// Of a wrench, an acceleration, or h; what follows the d first is of h alone.
+  /// A wrench, an acceleration, or h; entries beyond d are of h alone.
   using Column = std::array<double, d + Spare>;
 
   explicit MaximalTree(const Work& w) : w_(w), joint_(w.body.size()), a_(w.body.size()) {
@@ -84,7 +84,7 @@ class MaximalTree {
       with_rows(k, [&](auto s, auto gives) { outward<s.value, gives.value>(k, h, u); });
   }
 
-  /// Wrenches on body k and its parent that do the torques r (n_k) at its joint and nothing else.
+  /// Adds the wrenches on body k and its parent of torques r (n_k) at its joint.
   void add_torques(std::size_t k, const double* r, Column* f) const {
     const auto& b = w_.model->bodies[k];
     if (b.nv == 1) return add_torque(k, *r, f);
@@ -118,12 +118,13 @@ class MaximalTree {
     int held[d];
     int moved = -1;
     double along = 1;
-    /// Of a rotor: the part of R⁻¹ in the rows that give way, over √I_r; 1 / (R_dd √I_r) of one.
+    /// For a rotor: the part of R⁻¹ in the rows that give way, over √I_r; 1/(R_dd √I_r) for one
+    /// row.
     double give[Spare][Spare];
     bool light = false;  ///< the body alone resists nothing in some direction
   };
 
-  /// Calls with the number of rows of S, and how many of the last give way, as constants.
+  /// Calls f with the numbers of rows of S and of the last that give way, as constants.
   template <class F>
   void with_rows(std::size_t k, F&& f) const {
     const std::integral_constant<int, 0> none;
@@ -150,7 +151,7 @@ class MaximalTree {
     auto& j = joint_[k];
     j.moved = d;
     j.along = 1;
-    double slope = 0;  // of what moves with the moved direction, in the one before it or after
+    double slope = 0;  // motion beside the moved direction, over that along it
     if constexpr (d == 6)
       if (b.law) return set_user_axes(k);
     if (b.nv == 1) {
@@ -168,7 +169,7 @@ class MaximalTree {
         if (b.kind == JointKind::helical) slope = b.pitch;  // v_z = pitch ω_z
       }
     }
-    // Of balls the first three, of driven joints and welds all.
+    // Held directions: the first three at balls, all at driven joints and welds.
     int row = 0;
     for (int i = 0; i < d; ++i)
       if (i != j.moved) {
@@ -178,8 +179,8 @@ class MaximalTree {
       }
   }
 
-  /// Of a user joint of one coordinate, E = (E_i): the largest moves, e_i − (E_i / E_moved) e_moved
-  /// are held.
+  /// For a user joint of one coordinate, E = (E_i): the largest moves, e_i − (E_i / E_moved)
+  /// e_moved are held.
   void set_user_axes(std::size_t k) {
     auto& j = joint_[k];
     const auto& E = w_.body[k].edge.own->E[0];
@@ -228,7 +229,7 @@ class MaximalTree {
           }
         for (int i = hard; i < s; ++i) R[i][i] += 1 / b.rotor;
         if (!small::cholesky(R, 0)) return false;
-        // what solutions need of it: B = R⁻¹Yᵀ, T = R⁻¹S
+        // for solutions: B = R⁻¹Yᵀ, T = R⁻¹S
         for (int i = 0; i < s; ++i)
           for (int r = 0; r < d; ++r) j.B[i][r] = Y[r][i], j.T[i][r] = 0;
         small::forward(R, j.B);
@@ -248,7 +249,7 @@ class MaximalTree {
             if (slanted) j.T[i][j.moved] += inverse[i][l] * j.slant[l];
           }
         if (b.parent < 0) return true;
-        // what the parent gets: TᵀT, less Σ
+        // for the parent: TᵀT, less Σ
         double left[d][d];
         for (int a = 0; a < d; ++a)
           for (int c = 0; c < d; ++c) {
@@ -282,7 +283,7 @@ class MaximalTree {
       m[j.moved][j.moved] += value * j.slant[i] * j.slant[i];
     }
   }
-  /// Σ: what A has along the rows of S, and where that is nothing, a little of all it has.
+  /// Adds SᵀΣS; Σ: A along the rows of S, at least a small part of its trace.
   template <int s>
   static void stiffen(JointBlocks& j, double* sigma) {
     double trace = 0;
@@ -381,7 +382,7 @@ class MaximalTree {
 
   const Work& w_;
   std::vector<JointBlocks> joint_;
-  std::vector<Column> a_;  ///< of each body
+  std::vector<Column> a_;  ///< accelerations of bodies
   int singular_joint_ = -1;
 };
 

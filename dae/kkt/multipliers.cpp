@@ -28,7 +28,7 @@ const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, cons
   unique_.assign(centre_.size(), true);
   idle_.clear();
   if (tells_ && solver_.pivots().faded == 0) return unique_;
-  // In accelerations, so that forces and moments compare: a row's λ times its W_ii.
+  // Multipliers count as accelerations, λ_i W_ii, so that forces and moments compare.
   e_.place(t, q);
   const std::vector<double> scale = row_scales(mechanism_, e_);
   double largest = 0;
@@ -46,7 +46,7 @@ const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, cons
     moved_[i] = std::abs(idle_[i]) * scale[i];
     furthest = std::max(furthest, moved_[i]);
   }
-  // What regular rows move by is rounding over their pivots, which are above those that fade.
+  // Regular rows move by rounding over their pivots, which are above those that fade.
   constexpr double takes_part = 1e-6;
   if (!(furthest > takes_part * largest))
     idle_.clear();

@@ -1,5 +1,5 @@
 #pragma once
-// Which of the loops' multipliers are unique at a state: found by the solver that gives them, at
+// The loops' multipliers that are unique at a state: found by the solver that gives them, at
 // the cost of solving once more, and only where it has met rows that say nothing.
 //
 // Where Φ_q has lost rank, λ of (3) is determined but for ν with Φ_qᵀν = 0. A solver then gives the
@@ -21,12 +21,12 @@ class UniqueMultipliers {
  public:
   UniqueMultipliers(const Mechanism& mechanism, Evaluation<double>& e, LoopSolver& solver);
 
-  /// By row of Φ (m), at (t, q, u), of the `lambda` (m) that `solver` has just found there, centred
-  /// on zero. All false where the second solution fails. Cost: as of `lambda` where rows have
-  /// faded, or where (7) is solved by KLU, which can't tell; else nothing.
+  /// By row (m): whether the `lambda` (m) that `solver` has just found at (t, q, u), centred on
+  /// zero, is unique. All false where the second solution fails. Cost: as of `lambda` where rows
+  /// have faded, or where KLU, which can't tell, solves (7); else nothing.
   const std::vector<bool>& find(double t, const double* q, const double* u, const double* lambda);
-  /// After find(): what one more solution differs by (m), multipliers that move nothing; empty
-  /// where all are unique, or where there is none.
+  /// After find(): the difference of the two solutions (m), multipliers that move nothing; empty
+  /// where all are unique or the second failed.
   const std::vector<double>& idle() const { return idle_; }
 
  private:

@@ -57,7 +57,7 @@ class SparseKkt final : public Kkt {
   }
 
  private:
-  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
+  const std::vector<KktPattern::Entry>& pattern_;  ///< pattern of Φ_q
   std::unique_ptr<LeavesFirstMatrix> matrix_;
   std::size_t n_, m_;
   std::vector<double> x_;

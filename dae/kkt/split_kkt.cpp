@@ -7,7 +7,7 @@
 namespace momenta {
 namespace {
 
-constexpr std::size_t dense_unknowns = 60;  ///< unknowns, as of the DAE forms
+constexpr std::size_t dense_unknowns = 60;  ///< as in the DAE forms
 
 }  // namespace
 

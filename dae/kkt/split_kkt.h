@@ -22,13 +22,13 @@ class SplitKkt {
   /// `compliance`: ε by row (m), or empty for none.
   SplitKkt(const Mechanism& mechanism, std::vector<double> compliance);
 
-  /// M and Φ_qᵀ at the place of `e`.
+  /// Takes M and Φ_qᵀ at the place of `e`.
   void act_at(Evaluation<double>& e);
-  /// Φ_q at the place of `e`.
+  /// Takes Φ_q at the place of `e`.
   void meet_at(Evaluation<double>& e);
   /// Φ_q(q̄) x (m).
   void rates(const double* x, double* result) const;
-  /// False where it is singular or not finite. O((nv + m)³) dense, O(fill) sparse.
+  /// False where the matrix is singular or not finite. O((nv + m)³) dense, O(fill) sparse.
   bool factor();
   /// x (nv), s (m) of r (nv; null: zero), g (m).
   void solve(const double* r, const double* g, double* x, double* s);

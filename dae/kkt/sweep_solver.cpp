@@ -30,7 +30,7 @@ class SweepSolver final : public LoopSolver {
     for (const auto& b : mechanism.tree().bodies) place_of_body_.push_back(b.nv > 0 ? b.u : -1);
   }
 
-  /// A compliance row by row is none of rows paired anew.
+  /// A compliance by row needs the rows of the loops as the scene pairs them.
   void soften(std::vector<double> compliance) override {
     compliance_ = std::move(compliance);
     if (mechanism_.pairs_anew()) sweeps_ = mechanism_.looped_sweeps_as_given();
@@ -124,7 +124,7 @@ class SweepSolver final : public LoopSolver {
     return right;
   }
 
-  /// Where a folded branch loses rank its loops cannot close by themselves, and what they leave of
+  /// Solver for poses where a folded branch loses rank: its loops cannot close by themselves, and
   /// the body they fold into may seem to have no inertia.
   LoopSolver& by_matrix() {
     if (!matrix_) {

@@ -16,7 +16,7 @@ class SymmetricMatrix {
   SymmetricMatrix(int size, const std::vector<KktPattern::Entry>& entries);
 
   int size() const { return static_cast<int>(diagonal_.size()); }
-  /// Entry `i` of those given.
+  /// Sets the given entry `i`.
   void set(std::size_t i, double x) { value_[place_[i][0]] = value_[place_[i][1]] = x; }
   void set_diagonal(int i, double x) { value_[diagonal_[static_cast<std::size_t>(i)]] = x; }
   bool finite() const;

@@ -32,7 +32,7 @@ void take_rows(const LoopChoice& choice, Loop& l) {
   l.rows = static_cast<int>(choice.names.size());
 }
 
-/// Whether no body carries both.
+/// Whether a and b meet at the ground alone.
 bool meet_at_ground(const Tree& tree, int a, int b) {
   while (a != b) {
     int& later = a > b ? a : b;
@@ -41,7 +41,7 @@ bool meet_at_ground(const Tree& tree, int a, int b) {
   return a < 0;
 }
 
-/// Σ rᵢ qᵢ = c. Driven coordinates go to the other side.
+/// Casts Σ rᵢ qᵢ = c; driven coordinates go to the other side.
 template <class Space>
 void couple(const LoopSpec& spec, const Tree& tree, LoopModel<Space>& all,
             typename LoopModel<Space>::Loop& l, typename LoopModel<Space>::Motion& motion) {
@@ -60,7 +60,7 @@ void couple(const LoopSpec& spec, const Tree& tree, LoopModel<Space>& all,
   last.curve = all.curves++;
 }
 
-/// What drives prescribe of a loop whose points, axes and numbers are in place. `along` and `about`
+/// Prescribed motion of a loop whose points, axes and numbers are in place. `along` and `about`
 /// take a vector of the joint frame to the axes of B and to an axis of turning in A or B.
 template <class Space, class Translation, class About>
 void prescribe(const LoopSpec& spec, const Tree& tree, const Model<Space>& model,
@@ -95,7 +95,7 @@ void prescribe(const LoopSpec& spec, const Tree& tree, const Model<Space>& model
   all.motions.push_back(std::move(motion));
 }
 
-/// l at the start, the scale of its equation.
+/// l at the start, the scale of the distance's equation.
 double length_at_start(const LoopSpec& spec, const LoopDrives& drives) {
   if (!drives.coordinate[0]) return spec.length;
   double length, rate, second;

@@ -7,13 +7,13 @@
 namespace momenta {
 namespace {
 
-constexpr double angle_tolerance = 1e-12;  // of axes that are parallel by construction [rad]
+constexpr double angle_tolerance = 1e-12;  // between axes parallel by construction [rad]
 
 bool parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.cross(b).norm() < angle_tolerance;
 }
 
-/// Directions in ground axes at zero positions: what is parallel there on a planar cycle always is.
+/// Directions in ground axes at zero positions: parallels on a planar cycle there are so always.
 class ZeroPoses {
  public:
   ZeroPoses(const Tree& tree, const Model<Spatial>& model)
@@ -22,12 +22,12 @@ class ZeroPoses {
     for (std::size_t k = 0; k < poses_.size(); ++k)
       from_model_.push_back(poses_[k].linear() * model.frames[k].linear().transpose());
   }
-  /// Of a direction in the model's axes of a body.
+  /// A direction from the model's axes of a body to ground axes.
   Eigen::Vector3d direction(int body, const Vec3<double>& v) const {
     const Eigen::Vector3d own(v[0], v[1], v[2]);
     return body < 0 ? own : Eigen::Vector3d(from_model_[static_cast<std::size_t>(body)] * own);
   }
-  /// The same, the other way.
+  /// The inverse of direction().
   Eigen::Vector3d in_model(int body, const Eigen::Vector3d& v) const {
     return body < 0 ? v
                     : Eigen::Vector3d(from_model_[static_cast<std::size_t>(body)].transpose() * v);
@@ -68,7 +68,7 @@ Vec3<double>& axis_of_row(LoopModel<Spatial>::Loop& l, int i) {
   return l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(i)])];
 }
 
-/// The b'_i (rows), of which the k-th is n, from the b_j.
+/// The b'_i (rows) from the b_j; b'_k is n.
 Eigen::Matrix3d axes_with(const Eigen::Matrix3d& b, const Eigen::Vector3d& n, Eigen::Index k) {
   const Eigen::Index i = (k + 1) % 3, j = (k + 2) % 3;
   const Eigen::Vector3d first = b.row(j).transpose().cross(n).normalized();
@@ -130,7 +130,7 @@ CarriedRows::CarriedRows(const Tree& tree, const Model<Spatial>& model, LoopMode
       kept.axes[static_cast<std::size_t>(kept.n_axes++)] = l.axes[at];
       kept_rows.push_back(l.n_points + i);
     }
-    if (kept_rows.empty()) {  // no cycle in a plane, or one that is held by nothing
+    if (kept_rows.empty()) {  // no planar cycle, or one that nothing holds
       for (int row = 0; row < rows; ++row) keep(row);
       continue;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Which loop equations the sweeps carry in space. Where every joint on a loop's cycle, but the one
+// Loop equations that the sweeps carry in space. Where every joint on a loop's cycle, but the one
 // that carries the cycle's first body C, turns about one direction n or slides across it, all
 // bodies of the cycle move in planes across n, as seen from C, in every pose:
 //
@@ -19,8 +19,7 @@
 // the same equations, and D'_k is constant: a ball, too, closes by two. k is the axis nearest to
 // n; the three rows are softened alike, so that R leaves that alone.
 //
-// What turns the axes of a loop's own drive may leave
-// the plane: such loops are carried whole.
+// A loop's own drive that turns its axes may leave the plane: such loops are carried whole.
 
 #include <momenta/dae/loop/loop_model.h>
 
@@ -40,25 +39,23 @@ class CarriedRows {
   /// O(length of all loops).
   CarriedRows(const Tree& tree, const Model<Spatial>& model, LoopModel<Spatial>& loops);
 
-  /// Whether all rows are carried.
   bool all() const { return left_out_.empty(); }
-  /// Of Φ, the rows that are left out, or the nearest to what is.
+  /// Rows of Φ left out; of a ball the row nearest to what is left out.
   const std::vector<int>& left_out() const { return left_out_; }
-  /// Of Φ, the row that the sweeps number so.
+  /// Row of Φ that the sweeps number `carried`.
   int given(int carried) const;
-  /// σ of the carried rows, in the first places of `sigma`, to all m places, in place; components
-  /// `stride` apart. Of rows left out σ is that of `centre` (m); null: zero.
+  /// Spreads σ of the carried rows from the first places of `sigma` to all m, in place; components
+  /// `stride` apart. Rows left out have σ of `centre` (m); null: zero.
   void to_given(double* sigma, std::ptrdiff_t stride, const double* centre = nullptr) const;
-  /// σ' of the carried rows from σ (m), until the next call.
+  /// σ' of the carried rows from σ (m); valid until the next call.
   const double* to_carried(const double* sigma);
-  /// Of m numbers that are alike for the rows of a ball, those of carried rows, until the next
-  /// call.
+  /// The numbers of carried rows out of m, alike for the rows of a ball; valid until the next call.
   const double* of_carried(const double* x);
 
  private:
   /// A ball whose three rows, from `first` on, stand along other axes.
   struct Turned {
-    int first, nearest;  ///< rows of Φ; of the three, k
+    int first, nearest;  ///< rows of Φ: the first, and that of k
     Eigen::Matrix3d R;
   };
   std::vector<int> rows_, left_out_;

@@ -1,16 +1,15 @@
 #pragma once
-// One driven loop at one time: what its drives prescribe, and the rates of that relative to the
-// bodies, in their axes, by the formulas of loops_in_time.h; l or c = given + Σ factor_k f_k.
-// T is the scalar of time: double, or a series where the loop's equations are wanted as series in
-// t.
+// One driven loop at one time: its prescribed motion and the rates of that relative to the bodies,
+// in their axes, by the formulas of loops_in_time.h; l or c = given + Σ factor_k f_k. T is the
+// scalar of time: double, or a series where the equations are wanted as series in t.
 
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/loop/loop_model.h>
 
 namespace momenta {
 
-/// The scalar of time that goes with a scalar of states: series run along a curve in time, the
-/// others stand at one moment.
+/// The scalar of time for states of scalar S: a series for series along a curve in time, else
+/// double.
 template <class S>
 struct TimeOf {
   using type = double;

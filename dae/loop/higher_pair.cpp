@@ -14,10 +14,10 @@ using Two = std::array<double, 2>;
 using Lost = PairPlace::Lost;
 
 constexpr int most_steps = 50;
-constexpr double found = 1e-12;      // last step, of the range of the parameter
-constexpr double near_by = 0.02;     // gap, of the reach, up to which the last branch is kept
-constexpr double least_bend = 1e-9;  // of curvature · reach
-constexpr int grid = 24;             // digits of the parameter that are kept
+constexpr double found = 1e-12;      // last step, relative to the range of the parameter
+constexpr double near_by = 0.02;     // gap over reach that keeps the last branch
+constexpr double least_bend = 1e-9;  // least curvature · reach
+constexpr int grid = 24;             // digits kept of the parameter
 
 double dot(const Two& x, const Two& y) {
   return x[0] * y[0] + x[1] * y[1];
@@ -32,7 +32,7 @@ double norm(const Two& x) {
   return std::hypot(x[0], x[1]);
 }
 
-/// Of a curve's parameter; a line has that of the curve that touches it.
+/// Range of a curve's parameter; of a line, `reach` of the curve that touches it.
 double range_of(const PlaneCurve& curve, double reach) {
   if (curve.is_straight()) return reach;
   return curve.period() > 0 ? curve.period() : curve.samples().back() - curve.samples().front();
@@ -60,7 +60,7 @@ struct Foot {
     const double speed2 = dot(c.d, c.d);
     return {norm(e), dot(c.d, e), dot(c.dd, e) - speed2, speed2};
   }
-  /// Newton's method; to a point of least distance alone.
+  /// Newton's method, to a point of least distance alone.
   bool from(double& s) const {
     const double range = range_of(curve, 0);
     for (int k = 0; k < most_steps; ++k) {
@@ -72,7 +72,7 @@ struct Foot {
     }
     return false;
   }
-  /// Between the neighbours of the nearest sample r falls from above zero to below it.
+  /// Between the neighbours of the nearest sample r falls through zero.
   bool nearest(double& s) const {
     const auto& samples = curve.samples();
     std::size_t best = 0;
@@ -140,7 +140,7 @@ struct Touch {
       double da = -(now.r22 * now.r1 - now.r12 * now.r2) / det;
       double db = -(now.r11 * now.r2 - now.r21 * now.r1) / det;
       if (!std::isfinite(da) || !std::isfinite(db)) return false;
-      // a line is met in one step, however long
+      // one step meets a line, however long
       const double most_a = pair.of_a.is_straight() ? HUGE_VAL : 0.05 * range_a;
       const double most_b = pair.of_b.is_straight() ? HUGE_VAL : 0.05 * range_b;
       const double cut = std::min({1.0, most_a / std::abs(da), most_b / std::abs(db)});

@@ -42,7 +42,7 @@ struct PairTerms {
   std::array<S, 4> slope{};
   std::array<std::array<S, 4>, 4> bend{};  ///< symmetric
 
-  /// Second derivatives, or all, are no numbers.
+  /// Sets second derivatives, or all, to NaN.
   void lose(bool all) {
     const S none(std::nan(""));
     for (auto& row : bend) row.fill(none);
@@ -52,7 +52,7 @@ struct PairTerms {
   }
 };
 
-/// Where two curves touched last: what the next search begins from.
+/// Where two curves touched last: the start of the next search.
 struct PairPlace {
   enum class Lost {
     no,
@@ -74,12 +74,12 @@ struct HigherPair {
 
   /// Whether F depends on c and s.
   bool turns() const { return kind == Kind::rolling || kind == Kind::contact; }
-  /// How far from the origins of A and B the two may touch [m].
+  /// Greatest distance of the touching points from the origins of A and B [m].
   double reach_a() const { return kind == Kind::rolling ? radius : of_a.reach(); }
   double reach_b() const { return kind == Kind::circle ? radius : of_b.reach(); }
 
-  /// F and its derivatives at y; not a number where `place` is lost. No allocation. O(1) from the
-  /// last place; where that does not serve, O(samples) of a curve and O(samples²) of a contact.
+  /// F and its derivatives at y; NaN where `place` is lost. No allocation. O(1) from the last
+  /// place; else O(samples) for a curve, O(samples²) for a contact.
   template <class S>
   void evaluate(const std::array<S, 4>& y, PairPlace& place, PairTerms<S>& out) const {
     if constexpr (std::is_same_v<S, LocalDual>) {
@@ -152,7 +152,7 @@ struct HigherPair {
     out.bend[0][3] = out.bend[3][0] = -sine;
   }
 
-  /// n and dn/ds of the left normal.
+  /// Left normal n and dn/ds.
   template <class S>
   static void normal(const PlaneCurvePoint<S>& at, Pair<S>& n, Pair<S>& rate) {
     using std::sqrt;
@@ -224,8 +224,8 @@ struct HigherPair {
     }
   }
 
-  /// In dual numbers of y alone, then to what y hangs on: on the same unknowns whatever the values,
-  /// as sparse duals have to.
+  /// In dual numbers of y, then by the chain rule: on the same unknowns whatever the values, as
+  /// sparse duals have to.
   void by_chain_rule(const std::array<LocalDual, 4>& y, PairPlace& place,
                      PairTerms<LocalDual>& out) const;
 };

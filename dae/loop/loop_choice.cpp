@@ -157,7 +157,7 @@ class Choosing {
     c_.axes.emplace_back(i, j);
     c_.names.push_back(name);
   }
-  /// Behind the rows of points; there are none of axes.
+  /// Appended to the rows of points; a higher pair has none of axes.
   void higher(const std::string& name) { c_.names.push_back(name); }
   void across(int i, int j, const std::string& note) {
     axes(i, j, "axis " + number(i) + " against axis " + number(j) + note);
@@ -171,7 +171,7 @@ class Choosing {
     across(2, 0, note);
     across(2, 1, note);
   }
-  /// Rows of points stand before those of axes: call it before hinge() and all_axes().
+  /// Appends a row of points: call it before hinge() and all_axes().
   void translation(const DriveSpec* drive, int j) {
     if (!drive) return;
     point(j, "point along axis " + number(j) + ", driven");

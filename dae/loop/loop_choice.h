@@ -1,5 +1,5 @@
 #pragma once
-// Which rows a loop of a scene has, from its kind and from what drives prescribe of it.
+// Rows of a loop of a scene, from its kind and from what drives prescribe of it.
 
 #include <momenta/core/scene/scene.h>
 
@@ -11,7 +11,7 @@
 
 namespace momenta {
 
-/// Drives of one loop; null where there is none.
+/// Drives of one loop; null: none.
 struct LoopDrives {
   std::array<const DriveSpec*, 3> coordinate{}, origin{};
   bool drives_coordinates() const { return coordinate[0] || coordinate[1] || coordinate[2]; }
@@ -19,7 +19,7 @@ struct LoopDrives {
 using DrivesOfLoops = std::map<std::string, LoopDrives>;
 DrivesOfLoops drives_of_loops(const Scene& scene);
 
-/// In the joint frame: `direction` or its default, across that, and `axis`.
+/// In the joint frame, as columns: `direction` or its default, across that, and `axis`.
 Eigen::Matrix3d frame_across(const LoopSpec& loop);
 
 struct LoopChoice {
@@ -31,14 +31,13 @@ struct LoopChoice {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   std::vector<int> points;                ///< j of the D_j rows
   std::vector<std::pair<int, int>> axes;  ///< (i, j) of the O_ij rows
-  std::vector<std::string> names;         ///< of all rows
-  std::vector<Along> translations;        ///< of x_B
-  std::vector<Along> turns_a, turns_b;    ///< of the axes of A and B, one after the other
+  std::vector<std::string> names;         ///< names of all rows
+  std::vector<Along> translations;        ///< displacements of x_B
+  std::vector<Along> turns_a, turns_b;    ///< turns of the axes of A and B, in order
 };
 
-/// Rows and prescribed motion; of a distance or a coupler only the name, and of the row of a higher
-/// pair, which is the last. In a plane axis 1 is that of the slide or of the slot, axis 2 stands
-/// across it.
+/// Rows and prescribed motion; distances, couplers and, last, the row of a higher pair have only
+/// their names. In a plane axis 1 is that of the slide or of the slot, axis 2 across it.
 LoopChoice choose_rows(const LoopSpec& loop, const LoopDrives& drives, bool planar);
 
 }  // namespace momenta

@@ -36,7 +36,7 @@ struct LoopEquation {
   enum class Of { time, law, coordinate, point, law_rate, coordinate_rate, point_rate };
   struct Input {
     Of of = Of::time;
-    int place = -1;  ///< of laws, joints or points
+    int place = -1;  ///< index into laws, joints or points
   };
   struct Joint {
     int q = 0, u = 0;
@@ -44,7 +44,7 @@ struct LoopEquation {
   struct Point {
     int body = -1;      ///< −1: ground
     Vector at, along;   ///< body axes; ground axes of the model
-    double across = 0;  ///< what of the position lies across the plane of a planar scene
+    double across = 0;  ///< part of the position across the plane of a planar scene
   };
   Expression formula;  ///< F, all F_k, F_kl for l up to k
   std::vector<Input> inputs;
@@ -52,10 +52,10 @@ struct LoopEquation {
   std::vector<Joint> joints;
   std::vector<int> input_of_joint;  ///< by place among the loop's joints
   std::vector<Point> points;
-  std::vector<int> bodies;  ///< that have points, each once
-  std::vector<int> way;   ///< these and the joints' bodies, and all towards the ground, last first
-  bool moves = false;     ///< ∂F/∂t may be there, or, of velocities, b other than zero
-  bool of_rates = false;  ///< an equation of velocities
+  std::vector<int> bodies;  ///< bodies with points, each once
+  std::vector<int> way;     ///< these, the joints' bodies and all towards the ground, last first
+  bool moves = false;       ///< ∂F/∂t may be nonzero, or, of velocities, b
+  bool of_rates = false;    ///< an equation of velocities
 
   LoopEquation(Expression f) : formula(std::move(f)) {}
 };
@@ -185,7 +185,6 @@ class EquationRow {
       act(body, on);
     }
   }
-  /// Whether F and its derivatives are numbers.
   bool finite() const {
     double sum = 0;
     for (const S& x : values_) sum += 0 * value_of(x);

@@ -60,32 +60,32 @@ struct LoopModel {
   /// Angular velocity: a vector in space, a number in the plane.
   using Angular = decltype(cross(Vector{}, Vector{}));
 
-  /// Of a coupler: one free coordinate.
+  /// One free coordinate of a coupler.
   struct Coupled {
-    int body = 0;  ///< whose joint it is
+    int body = 0;  ///< body of its joint
     int q = 0, u = 0;
     double ratio = 0;
     std::array<double, 3> powers{};  ///< r₂, r₃, r₄
-    int curve = -1;                  ///< place among such `curves`; −1: none
+    int curve = -1;                  ///< index among coordinates with `curves`; −1: none
 
     template <class S>
     S value(const S& x) const {
       if (curve < 0) return ratio * x;
       return x * (ratio + x * (powers[0] + x * (powers[1] + powers[2] * x)));
     }
-    /// Its first derivative,
+    /// dΦ/dx,
     template <class S>
     S slope(const S& x) const {
       return ratio + x * (2 * powers[0] + x * (3 * powers[1] + (4 * powers[2]) * x));
     }
-    /// and its second.
+    /// d²Φ/dx²
     template <class S>
     S bend(const S& x) const {
       return 2 * powers[0] + x * (6 * powers[1] + (12 * powers[2]) * x);
     }
   };
   struct Loop {
-    int a = -1, b = -1;                    ///< bodies, −1: ground, and both of a coupler
+    int a = -1, b = -1;                    ///< bodies, −1: ground, as both of a coupler
     int row = 0, rows = 0;                 ///< place in Φ
     Vector at_a, at_b;                     ///< points, body axes
     std::array<Vector, 3> axis_a, axis_b;  ///< axes, body axes
@@ -103,13 +103,13 @@ struct LoopModel {
     int equation = -1;            ///< place in `equations`; `joints` are its coordinates
     int wheel = -1;               ///< place in `wheels`; then its rows are the only ones
     int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
-    double least_scale = 0;       ///< of rows of points: Mechanism::least_scales()
+    double least_scale = 0;       ///< rows of points: Mechanism::least_scales()
 
-    /// Whose axes the b_j are.
+    /// Body whose axes the b_j are.
     int axes_of_b() const { return is_tie ? -1 : b; }
     bool is_distance() const { return per_length > 0; }
     bool is_equation() const { return equation >= 0; }
-    /// Of coordinates, or an equation: no two bodies.
+    /// No two bodies: a coupler or an equation.
     bool is_coupler() const { return !joints.empty() || is_equation(); }
     bool is_pair() const { return pair >= 0; }
     bool is_wheel() const { return wheel >= 0; }
@@ -121,7 +121,7 @@ struct LoopModel {
     }
   };
 
-  /// What drives prescribe of one loop, and where that stands at one time.
+  /// Prescribed motion of one loop, and its values at one time.
   struct Motion {
     struct Translation {
       MotionLaw law;
@@ -134,14 +134,14 @@ struct LoopModel {
     std::vector<Translation> translations;
     std::vector<Turn> turns_a, turns_b;                 ///< R = R₁(f₁) R₂(f₂) …
     std::vector<std::pair<double, MotionLaw>> numbers;  ///< l or c is given + Σ factor · f
-    // As the loop would be with every f zero.
+    // The loop with every f zero.
     Vector at_b{};
     std::array<Vector, 3> axis_a{}, axis_b{};
     double given = 0;
 
-    // At the time of LoopsInTime: rates relative to the bodies, in their axes.
-    Vector v{}, a{};                                                       ///< of x_B
-    Angular turning_a{}, turning_a_rate{}, turning_b{}, turning_b_rate{};  ///< of a_i and b_j
+    // Rates relative to the bodies, in their axes, at the time of LoopsInTime.
+    Vector v{}, a{};                                                       ///< motion of x_B
+    Angular turning_a{}, turning_a_rate{}, turning_b{}, turning_b_rate{};  ///< a_i and b_j
     double given_rate = 0, given_second = 0;
   };
 
@@ -151,10 +151,10 @@ struct LoopModel {
   std::vector<std::shared_ptr<const LoopEquation<Space>>> equations;
   std::vector<Wheel> wheels;  ///< in space alone
   int rows = 0;               ///< m, size of Φ
-  int curves = 0;             ///< coordinates whose column of Φ_q changes: of powers and equations
+  int curves = 0;             ///< coordinates whose column of Φ_q changes
   /// Whether all rows are of the kinds that sweeps carry.
   bool swept() const { return curves == 0 && pairs.empty() && equations.empty() && wheels.empty(); }
-  /// By row, whether it is one of velocities that no row of positions stands behind.
+  /// Whether each row is one of velocities without a row of positions behind it.
   std::vector<bool> nonholonomic() const;
 };
 

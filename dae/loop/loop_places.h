@@ -1,8 +1,8 @@
 #pragma once
-// Points and axes of the loops at one place and one motion, for one algebra and one scalar: what
-// their rows (loop_levels.h) and the impulses of these (loop_rows.h) are made of. On body A x_A and
-// a_i, on B x_B and b_j, D = x_A − x_B; u_A, u_B, w_a, w_b as there. Of couplers, equations, pairs
-// and wheels, which have no rows of these alone, their own numbers.
+// Points and axes of the loops at one place and one motion, for one algebra and one scalar, from
+// which their rows (loop_levels.h) and the impulses of these (loop_rows.h) are made. On body A x_A
+// and a_i, on B x_B and b_j, D = x_A − x_B; u_A, u_B, w_a, w_b as there. Couplers, equations, pairs
+// and wheels have numbers of their own.
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
@@ -93,8 +93,8 @@ class LoopPlaces {
     }
   }
 
-  /// The first pair or equation that the last place() found no numbers of, by place among the
-  /// loops; −1: none.
+  /// Index of the first loop whose pair, equation or wheel has no value at the last place(); −1:
+  /// none.
   int lost_loop() const {
     if (pairs_.empty() && equations_.empty() && wheels_.empty()) return -1;
     for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -106,7 +106,7 @@ class LoopPlaces {
     }
     return -1;
   }
-  /// Where the curves of a pair touched at the last place(), by place of its loop.
+  /// Where the curves of the pair of a loop touched at the last place().
   const PairPlace& pair_place(std::size_t loop) const { return pair(model_->loops[loop]).place; }
 
   /// Point and angular velocities; needs velocities. `u` null: zero rates.
@@ -154,7 +154,7 @@ class LoopPlaces {
     }
   }
 
-  /// Accelerations of couplers and equations; `udot` null: zero. The latter need accelerations.
+  /// Accelerations of couplers and equations; `udot` null: zero. Equations need accelerations.
   void accelerate(const S* udot) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
@@ -171,7 +171,7 @@ class LoopPlaces {
     }
   }
 
-  /// ∂Φ/∂q of a coupler: what its joint is multiplied by at the last place().
+  /// Factor of a coupler on its joint's rate in Φ̇, at the last place().
   S ratio(const typename LoopModel<Space>::Coupled& c) const {
     return c.curve < 0 ? S(c.ratio) : curve(c).slope;
   }
@@ -183,19 +183,19 @@ class LoopPlaces {
     Vector x_a, x_b, D, u_a, u_b;
     Angular w_a{}, w_b{};
     std::array<Vector, 3> a, b;
-    S position{}, rate{}, second{};  ///< of a coupler
-    S bending{};  ///< of a coupler: what of Φ̈ has no u̇ in it, drives left out
+    S position{}, rate{}, second{};  ///< Φ, Φ̇, Φ̈ of a coupler
+    S bending{};                     ///< Φ̈ of a coupler at u̇ = 0, drives left out
   };
-  /// Of a coordinate with powers: r, dr/dq and ṙ.
+  /// r, dr/dq and ṙ of a coordinate with powers.
   struct Curve {
     S slope{}, bend{}, turning{};
   };
-  /// Of a higher pair: F and its derivatives, ẏ, and d/dt ∂F/∂y.
+  /// F of a higher pair and its derivatives, ẏ, and d/dt ∂F/∂y.
   struct Pair {
     PairPlace place;
     PairTerms<S> terms;
     std::array<S, 4> rate{}, slope_rate{};
-    std::size_t measures = 0;  ///< that F depends on
+    std::size_t measures = 0;  ///< number that F depends on
   };
   Curve& curve(const typename LoopModel<Space>::Coupled& c) {
     return curves_[static_cast<std::size_t>(c.curve)];
@@ -223,7 +223,7 @@ class LoopPlaces {
     return *model_->pairs[static_cast<std::size_t>(l.pair)];
   }
 
-  /// Derivatives are right to their own size.
+  /// Whether lost places are added; derivatives are right to their own size.
   static constexpr bool rounded = std::is_same_v<S, double>;
   using Time = typename TimeOf<S>::type;
   using Driven = DrivenLoop<Space, Time>;

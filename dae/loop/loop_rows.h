@@ -82,7 +82,7 @@ class LoopRows : public LoopLevels<Space, S> {
         if (c.curve >= 0) on_joints[c.u] += curve(c).turning * sigma[l.row];
   }
 
-  /// Unit wrench of a row on its bodies, none of couplers, in the axes of the sweeps: the start of
+  /// Unit wrench of a row on its bodies, zero for couplers, in the axes of the sweeps: the start of
   /// a row of Φ_q.
   void unit_wrench(std::size_t loop, int row_of_loop, Force& on_a, Force& on_b) const {
     const auto& l = model_->loops[loop];
@@ -122,7 +122,7 @@ class LoopRows : public LoopLevels<Space, S> {
   }
 
   /// Calls act(body, wrench) for the unit impulse of an equation on each body with points of it;
-  /// of other loops nothing.
+  /// not for other loops.
   template <class Act>
   void each_point_wrench(const Loop& l, Act&& act) const {
     if (l.is_equation()) equation(l).each_wrench(w_, S(1.0), false, act);

@@ -1,8 +1,7 @@
 #pragma once
-// What turns and slides in loops, weighed at the loops' points at the start: scales below which
-// rows of points are dust, and how far masses are apart. A joint's inertia is weighed at the end of
-// the way from it to the loop's point: so a uniform chain stays a chain of equals, whatever its
-// length.
+// Joints in loops, weighed at the loops' points at the start: scales below which rows of points are
+// rounding, and how far masses are apart. A joint's inertia is weighed at the end of the way from
+// it to the loop's point: so a uniform chain stays a chain of equals, whatever its length.
 
 #include <momenta/dae/loop/loop_model.h>
 
@@ -11,19 +10,19 @@
 
 namespace momenta {
 
-/// Of masses further apart what keeps the matrices of KLU and of the DAE forms regular is less by
-/// as much.
+/// Mass ratio beyond which the regularisation of KLU and of the DAE forms is weakened in
+/// proportion.
 inline constexpr double masses_far_apart = 1e6;
 
 struct LoopWeights {
-  /// Per loop: what unit forces on levers of 10⁻⁴ lengths of the scene move; zero for couplers.
-  /// [1/kg]
+  /// Per loop: mobility under unit forces on levers of 10⁻⁴ lengths of the scene; zero for
+  /// couplers. [1/kg]
   std::vector<double> least_scales;
-  /// Of all loops: heaviest over lightest, at least 1.
+  /// Heaviest over lightest joint of all loops, at least 1.
   double spread = 1;
-  /// Of the loop where that is the most: heaviest over lightest, at least 1.
+  /// Heaviest over lightest joint of the loop where that is the most, at least 1.
   double apart = 1;
-  /// Its lightest and its heaviest joint in words; empty where no loop has joints that weigh.
+  /// Lightest and heaviest joint of that loop in words; empty where joints of loops do not weigh.
   std::string light;
 };
 

@@ -14,7 +14,7 @@
 
 namespace momenta {
 
-/// Its functions are out of line, in doubles: the sweeps that call them are compiled for several
+/// Functions are out of line, in doubles: the sweeps that call them are compiled for several
 /// instruction levels.
 template <class Space>
 class LoopsInTime {
@@ -25,8 +25,7 @@ class LoopsInTime {
   LoopsInTime(const LoopsInTime&) = delete;
   LoopsInTime& operator=(const LoopsInTime&) = delete;
 
-  /// The model at time t [s]: without drives as it is. Valid until the next call. O(loops with
-  /// drives), no allocation.
+  /// The model at time t [s]; valid until the next call. O(loops with drives), no allocation.
   MOMENTA_INLINE const LoopModel<Space>& at(double t) { return moving_ ? moved(t) : *constant_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What rounding takes off the places of bodies on the way out from the ground.
+// Rounding lost in the places of bodies on the way out from the ground.
 //
 // x_K = x_L + d_K is rounded to the size of x_K, however short the step d_K from the parent's
 // origin: kilometres from the ground, two points of one revolute joint lie 10⁻¹² m apart by
@@ -30,7 +30,7 @@ class LostPlaces {
       lost_[k] = of_body(b.parent) + (step(w, k) - (w.body[k].pose.origin - origin(w, b.parent)));
     }
   }
-  /// Of a point of body k at `arm` from its origin, in ground axes, that was placed at x.
+  /// Rounding lost at a point of body k placed at x, `arm` from its origin, in ground axes.
   Vector of_point(const Workspace<Space, double>& w, int k, const Vector& arm,
                   const Vector& x) const {
     return of_body(k) + (arm - (x - origin(w, k)));
@@ -38,7 +38,7 @@ class LostPlaces {
 
  private:
   Vector of_body(int k) const { return k < 0 ? Vector{} : lost_[static_cast<std::size_t>(k)]; }
-  /// From the parent's origin to that of body k, in ground axes.
+  /// Step from the parent's origin to that of body k, in ground axes.
   static Vector step(const Workspace<Space, double>& w, std::size_t k) {
     if constexpr (Space::dimension == 3)
       return w.body[k].edge.r;

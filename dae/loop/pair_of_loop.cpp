@@ -4,7 +4,7 @@
 namespace momenta {
 namespace {
 
-/// In axes e₁, e₂ of the plane.
+/// A curve as a polyline in axes e₁, e₂ of the plane.
 DrawnCurves::Polyline drawn(const PlaneCurve& curve, double reach) {
   DrawnCurves::Polyline line;
   line.closed = curve.period() > 0;

@@ -7,8 +7,8 @@ namespace momenta {
 /// The pair of a loop with curves, in the axes frame_across(). @pre has_curves(loop). O(points)
 HigherPair pair_of(const LoopSpec& loop);
 
-/// Polylines that draw the curves of a slot, a cam or a rack: of its parent in axes of the parent,
-/// of its child in axes of the child [m]. What is straight is drawn up to `reach` on both sides.
+/// Polylines that draw the curves of a slot, a cam or a rack: the parent's in axes of the parent,
+/// the child's in axes of the child [m]. Lines are drawn up to `reach` on both sides.
 struct DrawnCurves {
   struct Polyline {
     std::vector<Eigen::Vector3d> points;

@@ -30,11 +30,11 @@
 
 namespace momenta {
 
-/// In ground axes.
+/// A wheel and its contact, in ground axes.
 template <class S>
 struct RollingWheel {
   using Vector = Vec3<S>;
-  std::array<Vector, 3> along;                  ///< n, b_1, b_2: of the rows in their order
+  std::array<Vector, 3> along;                  ///< n, b_1, b_2, in the order of the rows
   Vector at{};                                  ///< P
   Vector v_a{}, v_b{}, w_a{}, w_b{}, moving{};  ///< velocities of both bodies at P, and Ṗ
   S gap{};                                      ///< Φ of R1
@@ -70,12 +70,12 @@ struct RollingWheel {
     moving += (S(-wheel.circle) / s_) * (leaning + (o_ * rate / (s_ * s_)) * m_);
   }
   S rate(std::size_t row) const { return dot(along[row], v_a - v_b); }
-  /// Of the accelerations of both bodies' points at P.
+  /// Second derivative of a row, from the accelerations of both bodies' points at P.
   S second(std::size_t row, const Vector& a_a, const Vector& a_b) const {
     return dot(along[row], a_a - a_b + cross(w_a, moving - v_a) - cross(w_b, moving - v_b)) +
            dot(cross(w_b, along[row]), v_a - v_b);
   }
-  /// Whether there is one point of contact: less than 10⁻⁷ rad from flat it is rounding's.
+  /// Whether there is one point of contact: less than 10⁻⁷ rad from flat it is rounding.
   bool touches(const Wheel& wheel) const {
     constexpr double flat = 1e-7;
     return 0 * value_of(dot(at, at)) == 0 && (wheel.circle == 0 || value_of(s_) > flat);

@@ -8,7 +8,7 @@ namespace momenta {
 
 /// The name of one row of Φ, for rank reports and messages.
 struct RowName {
-  std::string loop;  ///< of the scene
+  std::string loop;  ///< name in the scene
   std::string what;  ///< "point along axis 1", "axis 3 against axis 1", "distance, driven"
 };
 

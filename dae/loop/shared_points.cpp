@@ -27,8 +27,8 @@ int root_of(const std::vector<int>& parents, int body) {
   return body;
 }
 
-/// Per pair of `wanted` the signed pairs of the tree `given` that add up to it: x_a − x_b as the
-/// sum along the way from a to b.
+/// Per pair of `wanted` the signed pairs of the tree `given` along the way from a to b, whose sum
+/// is x_a − x_b.
 std::vector<std::vector<std::pair<int, double>>> along(const std::vector<Pair>& given,
                                                        const std::vector<Pair>& wanted,
                                                        std::size_t nodes) {

@@ -25,19 +25,18 @@ class SharedPoints {
   SharedPoints(const SharedPoints&);
   SharedPoints& operator=(const SharedPoints&);
   ~SharedPoints();
-  /// The loops with such ties paired anew, each in the place of one of them, and the two bases. Of
-  /// bodies given by their parents, −1 the ground's; new pairs too are ties, of bodies that no
-  /// third one carries: two on one branch may have too little freedom between them to close there.
-  /// O(loops · log loops + Σ bodies² over the shared points).
+  /// Pairs anew, in `paired_anew`, the ties of bodies (given by their parents, −1: the ground) that
+  /// no third one carries: two on one branch may have too little freedom between them to close
+  /// there. O(loops · log loops + Σ bodies² over the shared points).
   template <class Space>
   SharedPoints(const std::vector<int>& parents, const LoopModel<Space>& loops,
                LoopModel<Space>& paired_anew);
 
-  /// Whether anything was.
+  /// Whether no tie was paired anew.
   bool empty() const { return count_ == 0; }
-  /// σ = Tᵀσ' in place, components `stride` apart.
+  /// σ' to σ = Tᵀσ' in place, components `stride` apart.
   void to_given(double* sigma, std::ptrdiff_t stride);
-  /// σ' = Sᵀσ (m), until the next call.
+  /// σ' = Sᵀσ (m); valid until the next call.
   const double* to_paired(const double* sigma);
 
  private:
@@ -48,8 +47,8 @@ class SharedPoints {
   void exchange(const std::vector<Term>& terms, double* sigma, std::ptrdiff_t stride);
 
   std::size_t count_ = 0;
-  std::vector<int> rows_;             ///< of Φ that change
-  std::vector<Term> given_, paired_;  ///< by where they go
+  std::vector<int> rows_;             ///< changed rows of Φ
+  std::vector<Term> given_, paired_;  ///< by destination
   std::vector<double> before_, all_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a loop model takes of an equation of a scene. Included only where loops are built.
+// Casts an equation of a scene into a loop model. Included only where loops are built.
 
 #include <momenta/core/kernel/take_formulas.h>
 #include <momenta/dae/loop/loop_equation.h>
@@ -12,8 +12,8 @@
 
 namespace momenta {
 
-/// Whether an equation of velocities has no term without a rate, b = 0: judged at some states. One
-/// that has no value there counts as having such a term.
+/// Whether every term of an equation of velocities has a rate, b = 0: judged at some states. An
+/// equation without a value there counts as b ≠ 0.
 inline bool vanishes_at_rest(const Formula& formula) {
   std::mt19937 random(1);  // the same states every time
   std::vector<double> x(formula.signals.size());

@@ -57,7 +57,7 @@ class Bdf5 {
     return restart(t0);
   }
 
-  /// At order 1, from y and y' as they stand.
+  /// Begins at order 1, from y and y' as they stand.
   bool restart(double t) {
     h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * scale_;
     h_ = std::min(h_, longest());
@@ -110,13 +110,13 @@ class Bdf5 {
 
  private:
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  static constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
+  static constexpr double first_step_fraction = 1e-4;  ///< part of the span, as with IDA
   static constexpr double worth = 1.5, most_growth = 2;
-  static constexpr int most_failures = 15;  ///< of one step
+  static constexpr int most_failures = 15;  ///< in one step
 
   double longest() const { return options_.max_step > 0 ? options_.max_step : span_; }
 
-  /// One trial; false: h_, order and what is to be made anew are set.
+  /// One trial; false: sets h_, the order and what to make anew.
   bool attempt(double t1) {
     const BdfStep::Outcome outcome =
         step_->attempt(t1, order_, renew_, {share_.now(), first_ || failures_ > 0 ? 2 : 1});
@@ -139,7 +139,7 @@ class Bdf5 {
         break;
     }
     renew_ = true;
-    if (!fresh) return false;  // the same step, with a matrix of its own
+    if (!fresh) return false;  // the same step again, with a matrix of its own
     ++failures_;
     change_step(0.25);
     rising_ = false;
@@ -162,7 +162,6 @@ class Bdf5 {
     return false;
   }
 
-  /// k − 1 where its error is not the greater.
   int lower_or_same() {
     const int k = order_;
     if (k == 1) return 1;
@@ -180,7 +179,7 @@ class Bdf5 {
     steps_since_change_ = 0;
   }
 
-  /// Order and step after an accepted one, before it joins the past.
+  /// Chooses order and step before an accepted step joins the past.
   void choose() {
     const int k = order_;
     degree_ = k;
@@ -219,7 +218,7 @@ class Bdf5 {
   double span_, scale_, h_ = 0;  ///< [s]; steps at a start are parts of the scale
   LocalShare share_;
   int highest_ = BdfStep::highest_order, order_ = 1;
-  int degree_ = 1;  ///< of dense output
+  int degree_ = 1;  ///< degree of dense output
   int steps_since_change_ = 0, failures_ = 0;
   bool first_ = true;  ///< no step since the start
   bool rising_ = true, renew_ = true;

@@ -93,8 +93,8 @@ BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew, Test test) {
 }
 
 BdfStep::Outcome BdfStep::correct(double t1, double c) {
-  // The rows of F that have c in them and those that have not want different corrections of an old
-  // matrix; this is the mean.
+  // Rows of F with c and rows without want different corrections of an old matrix; this is the
+  // mean.
   const double damping = 2 / (1 + c / made_for_);
   double first = 0, last = 0;
   for (int count = 0; count < most_corrections; ++count) {
@@ -123,7 +123,7 @@ BdfStep::Outcome BdfStep::correct(double t1, double c) {
     if (contraction_ * size <= newton_fraction) return Outcome::solved;
     last = size;
   }
-  // What is left may be rounding, and most of that a change of gauge.
+  // The rest may be rounding, mostly a change of gauge.
   return norm(delta_.data()) <= rounding ? Outcome::solved : Outcome::not_converged;
 }
 

@@ -44,7 +44,7 @@ class BdfStep {
   static constexpr int highest_order = 5;
   enum class Outcome { solved, not_converged, singular, not_evaluated, not_finite };
 
-  /// Of a system that has started.
+  /// Takes a system that has started.
   BdfStep(DaeSystem& system, double rtol, double atol);
 
   const char* linear_solver() const { return newton_.linear_solver(); }
@@ -53,22 +53,21 @@ class BdfStep {
   PastValues& past() { return past_; }
   const PastValues& past() const { return past_; }
 
-  /// A step is judged at a share of the tolerance; where it fails, by what the filters leave.
+  /// A step is judged at a share of the tolerance; if it fails, by what the filters leave.
   struct Test {
     double share = 1;
     int filters = 1;
   };
-  /// Solves for y at t1 > past().time(0), by `order` < past().count(), or 1 after begin().
-  /// Derivatives are made anew where `renew`, or those at hand are of too different a step.
+  /// Solves for y at t1 > past().time(0), by `order` < past().count(), or 1 after begin(). Makes
+  /// derivatives anew where `renew`, or where those at hand are of too different a step.
   Outcome attempt(double t1, int order, bool renew, Test test);
-  /// Whether the last attempt made its own derivatives.
   bool derivatives_are_new() const { return renewed_; }
-  /// After an attempt: the local error over its tolerance.
+  /// Local error of the last attempt, over its tolerance.
   double error() const { return error_; }
   /// After an attempt: ‖h^(j+1) y^(j+1)‖ over the tolerance, from y[t_n, …, t_{n−j−1}]; j <
   /// past().count().
   double term(int j);
-  /// y_n and y'_n join the past.
+  /// Adds y_n and y'_n to the past.
   void accept();
 
   const std::vector<double>& y() const { return y_; }
@@ -79,18 +78,18 @@ class BdfStep {
   /// Newton stops at this fraction of the tolerance, as IDA does here (ida.cpp).
   static constexpr double newton_fraction = 0.03;
   static constexpr int most_corrections = 5;
-  /// Corrections that shrink by less have converged, at rounding, or never will.
+  /// Corrections that shrink by less have converged, to rounding, or never will.
   static constexpr double slowest = 0.9, rounding = 0.1;
-  /// Of a matrix just made they shrink faster than of an old one.
+  /// Least contraction counted: a fresh matrix contracts faster than an old one.
   static constexpr double fastest = 0.02;
-  /// A filter that leaves more says nothing of stiffness.
+  /// Share left by a filter above which an error is not stiff.
   static constexpr double stiff = 0.1;
-  /// A matrix serves as long as c has changed by no more than this.
+  /// Change of c up to which a matrix serves.
   static constexpr double most_change = 1.25;
 
   Outcome correct(double t1, double c);
-  /// The norm of what `filters` filters leave of y_n − ω^P(t_n). Two evaluations of F, a solution
-  /// and a norm; for each further filter one evaluation and a solution.
+  /// Norm of what `filters` filters leave of y_n − ω^P(t_n). Costs two evaluations of F, a solution
+  /// and a norm; each further filter one evaluation and a solution.
   double left(int filters);
   double norm(const double* e);
   double by_component(const double* e) const;
@@ -104,12 +103,12 @@ class BdfStep {
   std::size_t n_;
   std::vector<double> y_, ydot_, predicted_, change_, delta_, weight_, begin_ydot_, rate_, rest_;
   double t1_ = 0, h_ = 0, error_ = 0;
-  std::array<double, highest_order + 2> terms_{};  ///< of the last attempt; −1: not yet known
-  double left_ = 1;         ///< share of the last attempt's error that its filter left
-  double term_ratio_ = 0;   ///< of the norm of what moves to that of q alone, in the last attempt
-  double made_for_ = 0;     ///< c of the matrix; 0: none
-  double contraction_ = 0;  ///< of Newton's corrections with this matrix, as ρ/(1 − ρ)
-  bool straight_ = false;   ///< the value one back stands for y' at the start
+  std::array<double, highest_order + 2> terms_{};  ///< terms of the last attempt; −1: not yet known
+  double left_ = 1;        ///< share of the last attempt's error that its filter left
+  double term_ratio_ = 0;  ///< norm of what moves over that of q alone, in the last attempt
+  double made_for_ = 0;    ///< c of the matrix; 0: none
+  double contraction_ = 0;  ///< contraction of Newton's corrections with this matrix, as ρ/(1 − ρ)
+  bool straight_ = false;  ///< the value one back stands for y' at the start
   bool renewed_ = false;
   Counters counters_;
 };

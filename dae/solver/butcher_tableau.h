@@ -1,6 +1,6 @@
 #pragma once
-// The coefficients of an explicit Runge-Kutta method as numbers, for sums over stages in another
-// order than a step's: its adjoint. Steps themselves have them as constants (explicit_step.h).
+// Coefficients of an explicit Runge-Kutta method as numbers, for sums over stages in another order
+// than a step's: its adjoint. Steps have them as constants (explicit_step.h).
 
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ struct ButcherTableau {
   bool first_is_end = false;
 };
 
-/// Of rk4, dp5, dop853, vern9. @throws std::invalid_argument for another name
+/// Tableau of rk4, dp5, dop853, vern9. @throws std::invalid_argument for another name
 ButcherTableau butcher_tableau(const std::string& method);
 
 }  // namespace momenta

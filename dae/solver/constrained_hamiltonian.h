@@ -1,15 +1,14 @@
 #pragma once
-// What RATTLE and the energy-momentum scheme need of a system beside y = (q, p): the parts of
-// H(q, p), L's Legendre transform, under Φ(q, t) = 0, with p = M u + (prescribed part), no impulses
-// σ in it.
+// A system beside y = (q, p) for RATTLE and the energy-momentum scheme: the parts of H(q, p), L's
+// Legendre transform, under Φ(q, t) = 0, with p = M u + (prescribed part), no impulses σ in it.
 
 #include <memory>
 #include <string>
 
 namespace momenta {
 
-/// The parts at one (t, q), with factors of M, and of ( M Φ_qᵀ; Φ_q 0 ) where asked for. A method
-/// that iterates between places has one of these for each. After at(), no call allocates.
+/// The parts at one (t, q), with factors of M and, where asked for, of ( M Φ_qᵀ; Φ_q 0 ). A method
+/// that iterates between places has one for each. After at(), no call allocates.
 class HamiltonianPlace {
  public:
   virtual ~HamiltonianPlace() = default;
@@ -31,13 +30,13 @@ class HamiltonianPlace {
   /// M x (nv), and x ← M⁻¹x.
   virtual void mass_times(const double* x, double* p) = 0;
   virtual void solve_mass(double* x) = 0;
-  /// T + V [J] at rates u (nv), and T there.
+  /// T + V [J] at rates u (nv), and T of the last energy().
   virtual double energy(const double* q, const double* u) = 0;
   virtual double kinetic() = 0;
   /// Power of forces without potential [W], at rates u (nv) of the last force().
   virtual double power(const double* q, const double* u) = 0;
 
-  /// Factorises the matrix at (t, q), where this is. False where it has no solution.
+  /// Factorises the matrix at (t, q), the place of the last at(). False where it has no solution.
   virtual bool factor(double t, const double* q) = 0;
   /// δ (nv) and ν (m) of M δ + Φ_qᵀν = 0, Φ_q δ = −g (m), where the last factor() was. In rows that
   /// depend on others ν fades to zero. False where a result is not finite.
@@ -55,7 +54,7 @@ class ConstrainedHamiltonian {
   virtual std::unique_ptr<HamiltonianPlace> place() const = 0;
   /// Why M has no inverse at (t, q), in words; empty: it has one.
   virtual std::string without_inverse(double t, const double* q) = 0;
-  /// q' (nq) at rates u, and q ∘ exp δ, see SecondOrder.
+  /// q' (nq) at rates u, and q ∘ exp δ: see SecondOrder.
   virtual void coordinate_rates(const double* q, const double* u, double* qdot) = 0;
   virtual void move(const double* q, const double* delta, double* moved) = 0;
 };

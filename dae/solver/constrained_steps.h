@@ -1,6 +1,6 @@
 #pragma once
-// What the methods with fixed steps on a ConstrainedHamiltonian share: a start with no σ in p, one
-// step after another on the grid, output inside steps.
+// Methods with fixed steps on a ConstrainedHamiltonian: a start with no σ in p, steps on the grid,
+// output inside steps.
 //
 // `Step`, one step from a state and what it needs to know of the last one, provides
 //
@@ -31,13 +31,13 @@ struct State {
   Eigen::VectorXd q, p, u;
 };
 
-/// When an iteration by substitution has reached rounding.
+/// Tells when an iteration by substitution has reached rounding.
 class Convergence {
  public:
   enum class Is { under_way, reached, failed };
-  /// `slack`: by how much what rounding leaves may be larger than the unknowns' own.
+  /// `slack`: how much larger rounding may be than that of the unknowns.
   explicit Convergence(double slack = 1) : rounding_(slack * rounding) {}
-  /// After each iteration, with the size of its changes relative to the unknowns'.
+  /// To be called after each iteration, with the size of its changes relative to the unknowns'.
   Is after(double size) {
     if (size >= last_ && size <= rounding_) ++stalls_;
     if (size <= reached || stalls_ == patience) return Is::reached;
@@ -51,15 +51,15 @@ class Convergence {
   static constexpr int most_iterations = 100;
   static constexpr double reached = 4 * std::numeric_limits<double>::epsilon();
   static constexpr double rounding = 1e-13;  ///< below this, changes that do not shrink are noise
-  static constexpr int patience = 3;         ///< times they may not
+  static constexpr int patience = 3;         ///< times that they may not shrink
   double rounding_;
   double last_ = std::numeric_limits<double>::infinity();
   int stalls_ = 0, count_ = 0;
 };
 
-/// Iterations to rounding. `once(change)` is one of them: how much it changed, relative to the
-/// unknowns' size; false: `cause` says why, or a value is not finite. `unsolved`: the cause where
-/// changes do not shrink.
+/// Iterates to rounding. `once(change)`: one iteration, sets its change relative to the unknowns'
+/// size; false: `cause` says why, or a value is not finite. `unsolved`: the cause where changes do
+/// not shrink.
 template <class Once>
 bool to_rounding(Convergence convergence, Counters& counters, std::string& cause,
                  const char* unsolved, Once&& once) {
@@ -77,12 +77,12 @@ bool to_rounding(Convergence convergence, Counters& counters, std::string& cause
   }
 }
 
-/// To (t, q) of a step's start, with the factors of (7) there.
+/// Goes to (t, q) of a step's start, with the factors of (7) there.
 inline bool go(HamiltonianPlace& place, double t, const State& state) {
   return place.at(t, state.q.data()) && place.factor(t, state.q.data());
 }
 
-/// p onto Φ_q u + Φ_t = 0 at `place`, where it was last factorised, and u with it.
+/// Takes p, and u with it, onto Φ_q u + Φ_t = 0 at `place`, where it was last factorised.
 class OntoVelocities {
  public:
   explicit OntoVelocities(const ConstrainedHamiltonian& parts)
@@ -100,8 +100,8 @@ class OntoVelocities {
     place.rates(state.p.data(), nullptr, state.u.data());
     return true;
   }
-  /// The same where a step ends, with the matrix of (7) there. False: `cause` says why, where it is
-  /// the matrix.
+  /// The same at a step's end, with the matrix of (7) there. False: `cause` says why, if it is the
+  /// matrix.
   bool at_end(HamiltonianPlace& place, double t, State& state, Counters& counters,
               std::string& cause) {
     ++counters.factorizations;
@@ -171,7 +171,8 @@ class Steps {
     return true;
   }
 
-  /// The step from the last one's start to an output time; the cubic where that does not converge.
+  /// Takes the step from the last one's start to an output time; the cubic where that does not
+  /// converge.
   bool sample(double t, double* y, double*) {
     if (std::abs(t - t1_) <= grid_.tolerance()) return store(now_, y), true;
     if (std::abs(t - t0_) <= grid_.tolerance()) return store(old_, y), true;

@@ -100,8 +100,7 @@ class Cvode {
         cause = "a value that is not a finite number came up";
         return false;
       }
-      // Shortened over and over before a point it cannot pass, it would go on in steps of no
-      // length.
+      // A step shortened over and over before a point it cannot pass would go on without length.
       if (t < end && t - t0 < 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) {
         cause = "the step became as short as the rounding of t" + inner_cause();
         return false;
@@ -152,7 +151,7 @@ class Cvode {
     return 1;
   }
 
-  /// The change of y that the system makes after a step.
+  /// Changes y as the system does after a step.
   static int project(double t, N_Vector y, N_Vector change, double, N_Vector, void* self) {
     Cvode& cvode = *static_cast<Cvode*>(self);
     double* values = N_VGetArrayPointer(change);
@@ -165,7 +164,7 @@ class Cvode {
     return 1;
   }
 
-  /// What went wrong in a trial of the present step, if anything did.
+  /// Why a trial of the present step failed, if one did.
   std::string inner_cause() const {
     if (evaluation_failed_) return ": " + evaluation_cause(system_.failure());
     return not_finite_ ? ": a value that is not a finite number came up" : "";
@@ -208,7 +207,7 @@ class Cvode {
   sundials::LinearSolver linear_solver_;
   sundials::NonlinearSolver fixed_point_;
   sundials::Integrator memory_;
-  double stop_ = std::numeric_limits<double>::quiet_NaN();  ///< that CVODE knows of [s]
+  double stop_ = std::numeric_limits<double>::quiet_NaN();  ///< stop that CVODE knows of [s]
   bool evaluation_failed_ = false, not_finite_ = false;     ///< in a trial of the present step
 };
 

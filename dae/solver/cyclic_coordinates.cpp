@@ -6,7 +6,7 @@ namespace momenta {
 namespace {
 
 constexpr int states = 3;
-constexpr double zero = 1e-12;  ///< over the largest of its kind
+constexpr double zero = 1e-12;  ///< relative to the largest of its kind
 
 /// n numbers between −1 and 1, the same everywhere.
 Eigen::VectorXd some(std::mt19937& chance, Eigen::Index n) {

@@ -1,8 +1,8 @@
 #pragma once
-// Which coordinates are cyclic: H and Φ do not depend on them, no force acts along them, so
-// their momenta are constants of the motion, such as the momentum about the vertical axis of a
-// turntable. L_q + Q and Φ_qᵀx are analytic but for stops: what is zero at states taken at random
-// is zero everywhere, with probability one.
+// Cyclic coordinates: H and Φ do not depend on them, no force acts along them, so their momenta are
+// constants of the motion, such as the momentum about the vertical axis of a turntable. L_q + Q and
+// Φ_qᵀx are analytic but for stops: what is zero at random states is zero everywhere, with
+// probability one.
 
 #include <momenta/dae/solver/constrained_hamiltonian.h>
 

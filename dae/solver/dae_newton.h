@@ -14,11 +14,11 @@ class DaeNewton {
  public:
   enum class Made { yes, not_evaluated, not_finite, singular };
 
-  /// Of a system that has started.
+  /// Takes a system that has started.
   explicit DaeNewton(DaeSystem& system);
 
   const char* linear_solver() const;
-  /// The matrix at (t, y, y'), factorised.
+  /// Makes and factorises the matrix at (t, y, y').
   Made make(double t, const double* y, const double* ydot, double c);
   /// b ← J⁻¹ b.
   void solve(double* b);
@@ -29,7 +29,7 @@ class DaeNewton {
   DaeSystem& system_;
   LocalJacobian* local_;
   std::size_t n_;
-  int version_ = 0;  ///< of the local pattern in matrix_
+  int version_ = 0;  ///< version of the local pattern in matrix_
   std::unique_ptr<NewtonMatrix<double>> matrix_;
   std::vector<double> row_scale_, work_;
 };

@@ -23,8 +23,8 @@ class DenseOutput {
  public:
   explicit DenseOutput(std::size_t n) : n_(n), stride_(padded(n)), r_(terms * stride_) {}
 
-  /// Of a step of length h; `k`: all stages, those of dense output included, padded(n) apart. The
-  /// arrays y and y_new are as long.
+  /// Sets the polynomial of a step of length h; `k`: all stages, those of dense output included,
+  /// padded(n) apart. y and y_new are as long.
   void set(const double* y, const double* y_new, double h, const double* k) {
     for (std::size_t i = 0; i < stride_; ++i) {
       const double delta = y_new[i] - y[i], bend = h * k[i] - delta;
@@ -45,7 +45,7 @@ class DenseOutput {
       out[i] = value;
     }
   }
-  /// Its terms, for a look at whether they are finite.
+  /// Terms of the polynomial, for a check that they are finite.
   const double* entries() const { return r_.data(); }
   std::size_t size() const { return terms * stride_; }
 

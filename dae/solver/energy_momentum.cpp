@@ -44,13 +44,13 @@ namespace {
 using constrained::State;
 using Eigen::VectorXd;
 
-/// Energies nearer than this, over their size, are one; where less than the other bound of it is in
-/// motion, d has no length.
+/// Relative difference of equal energies; part of the energy below which motion is none, and d has
+/// no length.
 constexpr double energy_rounding = 4 * std::numeric_limits<double>::epsilon();
 constexpr double least_motion = 1e-12;
-constexpr int first_balance = 3;  ///< iteration from which α is sought
-constexpr double settled = 0.1;   ///< and relative change of δ and u_1 below which it is
-constexpr double longest = 0.1;   ///< change of α at once
+constexpr int first_balance = 3;  ///< first iteration that seeks α
+constexpr double settled = 0.1;   ///< relative change of δ and u_1 below which α is sought
+constexpr double longest = 0.1;   ///< longest change of α at once
 
 class EnergyMomentum {
  public:
@@ -205,12 +205,12 @@ class EnergyMomentum {
   VectorXd lambda_, sigma_, phi_, rate_, of_phi_, of_rate_;
   VectorXd q_, delta_, half_, u_, u1_, p_, g_, force_, change_of_p_, lift_, unused_, push_;
   std::vector<int> cyclic_;          ///< places in p
-  Eigen::MatrixXd columns_, among_;  ///< of M, those of cyclic coordinates, and the rows of these
+  Eigen::MatrixXd columns_, among_;  ///< cyclic columns of M, and cyclic rows of these
   Eigen::LDLT<Eigen::MatrixXd> block_;
   VectorXd of_cyclic_;
   double alpha_ = 0;
   double energy_ = 0, energy_before_ = 0;  ///< wanted at this step's start, at the last one's [J]
-  double work_ = 0;                        ///< of forces without potential in this step [J]
+  double work_ = 0;                        ///< work of forces without potential in this step [J]
   std::string cause_;
 };
 

@@ -52,7 +52,7 @@ class ExplicitRun {
       Memory memory = *options_.carried;
       carry(memory);
     }
-    trials_.set_handling();  // whatever the run before this one ended with
+    trials_.set_handling();  // whatever the run before ended with
     result_.done =
         options_.carried ? steps() : sample_until(t_) && (t_ == end_ || (start() && steps()));
     if (!stopped_elsewhere_) {
@@ -75,7 +75,7 @@ class ExplicitRun {
     return true;
   }
 
-  /// Between two steps, or two trials of one.
+  /// Carries the run between two steps, or two trials of one.
   void carry(Memory& memory) {
     step_.carry(memory);
     trials_.carry_control(memory);
@@ -88,7 +88,7 @@ class ExplicitRun {
   }
 
   bool steps() {
-    const bool adaptive = !trials_.fixed() && !(cpu_.seconds() > 0);  // what is asked for goes on
+    const bool adaptive = !trials_.fixed() && !(cpu_.seconds() > 0);  // else on to the limit
     Pace pace(result_.counters.steps + result_.counters.rejected, t_, end_, options_.max_steps);
     while (true) {
       if (carry_ && system_.can_be_put_down()) observer_.before_step(t_, carry_);
@@ -133,23 +133,23 @@ class ExplicitRun {
     }
   }
 
-  /// Whether f at this step's end becomes the next first stage. It is evaluated before anyone looks
-  /// and never taken from dense output, which would be another f wherever f depends on the step
-  /// under way (what faded rows are centred on): observing a run must not change it.
+  /// Whether f at this step's end becomes the next first stage. It is never taken from dense
+  /// output, where f may depend on the step under way (the centre of faded rows): observing a run
+  /// must not change it.
   bool keeps_end() const {
     if (Tableau::end_derivative_always) return true;
     return !corrected_ && trials_.handling() == SingularityHandling::none;
   }
 
   /// Whether another method, which has no singularity handling, may go on with a stiff problem.
-  /// Next to a singular pose this one does; but one that is passed is passed in fewer steps.
+  /// Next to a singular pose this one goes on; but a pose to be passed is passed in fewer steps.
   bool may_be_left() {
     constexpr int most_waited = 1000;
     return trials_.handling() != SingularityHandling::position || ++waited_ > most_waited;
   }
 
-  /// Steps of their own from this one's start to t, each within the tolerance; uncounted, and not
-  /// corrected. False where more than a few are needed.
+  /// Steps from this step's start to t, each within the tolerance; uncounted, not corrected. False
+  /// where more than a few are needed.
   bool steps_to(double t) {
     if constexpr (Tableau::estimates > 0) {
       look_->restart(step_.y());
@@ -197,8 +197,8 @@ class ExplicitRun {
     return true;
   }
 
-  /// |λ| at the step's end, which is about to be corrected: what a gauge makes of it is farther
-  /// from the last stage than their motions are. f there serves this alone and is not counted.
+  /// |λ| at the step's end, about to be corrected: a gauge takes that farther from the last stage
+  /// than their motions are. f there serves this alone and is not counted.
   double rate_of_change_at_end(double t1) {
     const Looking looking(system_);
     if (!system_.rhs(t1, step_.y_new(), end_rate_.data())) return 0;
@@ -212,7 +212,7 @@ class ExplicitRun {
     return stop_here(t1, unaltered_.data(), evaluation_cause(system_.failure()));
   }
 
-  /// Output times at or before t, from the state at the step's end.
+  /// Samples output times at or before t, from the state at the step's end.
   bool sample_until(double t) {
     const Looking looking(system_);
     for (; outputs_.due(t); outputs_.advance())
@@ -223,8 +223,8 @@ class ExplicitRun {
     return true;
   }
 
-  /// An output time this near a step's end is that end: rounding of the times, no more. On a fixed
-  /// grid both are meant as multiples of the step, and 1e-9 of it is the same thing.
+  /// An output time this near a step's end is that end but for rounding. On a fixed grid both are
+  /// meant as multiples of the step, and 1e-9 of it is the same thing.
   double time_tolerance(double t1) const {
     return trials_.fixed() ? 1e-9 * options_.step : 4 * epsilon * std::abs(t1);
   }
@@ -251,7 +251,7 @@ class ExplicitRun {
   const Observer& observer_;
   OutputCursor outputs_;
   ExplicitStep<Tableau> step_;
-  Trials<Tableau> trials_;                     ///< of step_
+  Trials<Tableau> trials_;
   std::optional<ExplicitStep<Tableau>> look_;  ///< for samples of steps with singularity handling
   CpuLimit cpu_;
   Interpolant between_;

@@ -1,4 +1,4 @@
-// Explicit Runge-Kutta methods by name: their tableaux, and what they are asked for.
+// Explicit Runge-Kutta methods by name: their tableaux, and checks of options.
 
 #include <momenta/dae/solver/explicit_run.h>
 #include <momenta/dae/solver/tableau_dop853.h>

@@ -63,12 +63,12 @@ class ExplicitStep {
   double* workspace() { return argument_.data(); }
   long evaluations() const { return evaluations_; }
 
-  /// From y anew, with nothing carried over.
+  /// Begins from y anew, with nothing carried over.
   void restart(const double* y) {
     std::copy_n(y, n_, y_.data());
     std::fill_n(lost_.data(), stride_, 0.0);
   }
-  /// Between two steps: y, what rounding took off it, and f there.
+  /// Carries y, its lost rounding, and f there between two steps.
   void carry(Memory& memory) {
     memory(y_.data(), n_), memory(lost_.data(), n_), memory(stage(0), n_), memory(evaluations_);
   }
@@ -94,22 +94,22 @@ class ExplicitStep {
     return good ? StageFailure::none : StageFailure::not_finite;
   }
 
-  /// f at the step's end, where it is not there yet.
+  /// Evaluates f at the step's end, unless it is there.
   bool have_end_derivative() {
     if (!have_end_) have_end_ = evaluate(t1_, y_new_.data(), stage(s));
     return have_end_;
   }
 
-  /// Keeps the last stage and its argument, both at t1, for rate_of_change(). After attempt() and
-  /// estimates of its error, before anything else is evaluated: its last argument is still there.
+  /// Keeps the last stage and its argument, both at t1, for rate_of_change(). To be called after
+  /// attempt() and estimates of its error, before anything else is evaluated.
   void keep_last_stage() {
     std::copy_n(argument_.data(), n_, last_argument_.data());
     std::copy_n(stage(s - 1), n_, last_stage_.data());
   }
-  /// |f(y) − f(g)| / |y − g| [1/s] of the state and that stage; zero where they are the same. In
-  /// units of the tolerance.
+  /// |f(y) − f(g)| / |y − g| [1/s] of the state and the last stage, in units of the tolerance; zero
+  /// where they are the same.
   double rate_of_change() const { return rate_of_change(y_.data(), stage(0)); }
-  /// The same of y and f = f(y) at that time.
+  /// The same of other y and f = f(y) at that time.
   double rate_of_change(const double* y, const double* f) const {
     double rates = 0, ways = 0;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -145,9 +145,9 @@ class ExplicitStep {
     return both == 0 ? 0 : h_ * h_ * high * high / (both * n);
   }
 
-  /// The same in the system's own norm, of what changes the motion alone. In use near singular
-  /// poses, where a single stage may have an error of its own: DOP853's combination, which is far
-  /// below |e_5| for smooth stages and hides that, is no less than a tenth of it there.
+  /// The same in the system's own norm, of changes of the motion alone. Near singular poses, where
+  /// it is used, one stage may have an error of its own, which DOP853's combination hides, far
+  /// below |e_5| for smooth stages: there it is no less than a tenth of that.
   double motion_error_squared() {
     const auto measured = [&]<std::size_t row>() {
       for (std::size_t i = 0; i < stride_; i += width)
@@ -160,12 +160,12 @@ class ExplicitStep {
     return both == 0 ? 0 : h_ * h_ * std::max(high * high / both, 0.01 * high);
   }
 
-  /// Stages less those of another step: what estimates are then made of.
+  /// Subtracts another step's stages: estimates are then of the difference.
   void subtract_stages(const ExplicitStep& other) {
     for (std::size_t i = 0; i < (s + 1) * stride_; ++i) k_[i] -= other.k_[i];
   }
 
-  /// y at t in [t, t1] into out, n values; NaN throughout when a stage for it cannot be had.
+  /// y at t in [t, t1] into out, n values; all NaN when a stage for it cannot be evaluated.
   bool interpolate(double t, double* out) {
     if (!have_dense_ && !prepare_dense()) {
       std::fill_n(out, n_, std::numeric_limits<double>::quiet_NaN());
@@ -176,7 +176,7 @@ class ExplicitStep {
   }
   bool interpolation_failed() const { return interpolation_failed_; }
 
-  /// f at the step's new start, where the system has it at hand.
+  /// Takes f at the step's new start, where the system has it.
   bool take_first_derivative() { return system_.first_derivative(stage(0)); }
 
   /// Takes the step. With `keep_end` f at its end, if there, becomes the next first stage; returns
@@ -193,8 +193,8 @@ class ExplicitStep {
   double* stage(std::size_t i) { return k_.data() + i * stride_; }
   const double* stage(std::size_t i) const { return k_.data() + i * stride_; }
 
-  /// y_new = y + h Σ b_j k_j, what rounding takes off carried into the next step's sum (Kahan
-  /// 1965): over many steps it would be all that is left of the error at tight tolerances.
+  /// y_new = y + h Σ b_j k_j, compensated (Kahan 1965): over many steps rounding would be the whole
+  /// error at tight tolerances.
   void update(double h) {
     for (std::size_t i = 0; i < stride_; i += width) {
       const Pack y = load(y_.data() + i);
@@ -254,7 +254,7 @@ class ExplicitStep {
   AlignedArray atol_, y_, y_new_, lost_, lost_new_, argument_, error_;  ///< stride_ each
   AlignedArray k_;  ///< stages, stored × stride_
   DenseOutput<Tableau> dense_;
-  std::vector<double> last_argument_, last_stage_;  ///< n_, where they were kept
+  std::vector<double> last_argument_, last_stage_;  ///< n_ each, once kept
   double relative_;                                 ///< atol of an unknown of scale 1
   double t_ = 0, t1_ = 0, h_ = 0;
   long evaluations_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Trials of one step of an explicit Runge-Kutta method: how long it is, whether it is accepted,
-// with which singularity handling, and how long the next is.
+// Trials of one step of an explicit Runge-Kutta method: its length, whether it is accepted, its
+// singularity handling, and the next length.
 //
 // A step taken with singularity handling cannot be more accurate than rounding in f lets it: close
 // to the pose that is ε/δ, the estimate is of the size of h ε/δ, and a control that takes it for
@@ -28,7 +28,7 @@ inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
 template <class Tableau>
 class Trials {
  public:
-  /// Of `step`, in a run of n unknowns over [t0, end]. All must outlive it.
+  /// Trials of `step`, in a run of n unknowns over [t0, end]. All must outlive it.
   Trials(OdeSystem& system, const IntegrationOptions& options, ExplicitStep<Tableau>& step,
          std::size_t n, double t0, double end)
       : system_(system),
@@ -40,7 +40,7 @@ class Trials {
         fixed_(options.step > 0) {}
 
   bool fixed() const { return fixed_; }  ///< steps of options.step, no error control
-  SingularityHandling handling() const { return handling_; }  ///< of the step under way
+  SingularityHandling handling() const { return handling_; }  ///< handling of the step under way
   long evaluations() const { return again_evaluations_; }     ///< beside those of `step`
 
   /// The first step, after step.begin(t).
@@ -68,14 +68,14 @@ class Trials {
     memory(h_), memory(first_), memory(handling_), memory(first_handled_), memory(lengthened_);
     memory(again_evaluations_);
   }
-  /// Whatever handling the system had, it now has that of these.
+  /// Sets the system's handling to that of these trials.
   void set_handling() { system_.set_handling(handling_); }
-  /// After a step that asked for less.
+  /// Lowers the handling after a step that asked for less.
   void lower_handling() {
     if (system_.wanted_handling() < handling_) take_handling(system_.wanted_handling());
   }
 
-  /// Where the step to be tried from t ends, after `steps` of them; sets its length.
+  /// End of the step to be tried from t, after `steps` of them; sets its length.
   double step_end(double t, long steps) {
     if (fixed_) {
       // On the grid t0 + k h, without summed rounding; the end takes the place of a point 1e-9 h
@@ -95,7 +95,7 @@ class Trials {
   /// One trial of a step from t to t1. Rejected: to be repeated with the new length; failed: cause.
   Is attempt(double t, double t1, std::string& cause) {
     StageFailure failure = step_.attempt(t, t1, h_);
-    // Once more with singularity handling: f differs there from what these stages were.
+    // Once more with singularity handling: it changes f.
     if (!fixed_ && system_.wanted_handling() > handling_) {
       const bool again = system_.wanted_handling() == SingularityHandling::position;
       take_handling(system_.wanted_handling());
@@ -115,7 +115,7 @@ class Trials {
         h_ = std::min(2 * h_, longest_step());
         return Is::accepted;
       }
-      // A stage fell upon the pose. Those of a longer step are farther from it.
+      // A stage fell upon the pose; those of a longer step are farther from it.
       if (++lengthened_ <= most_lengthened) {
         h_ = std::min(1.7 * h_, longest_step());
         return Is::rejected;
@@ -137,11 +137,10 @@ class Trials {
   }
 
  private:
-  /// A step with singularity handling below this part of the first one may be short because of
-  /// rounding.
+  /// Part of first_handled_ below which rounding may be what makes a step short.
   static constexpr double short_step = 0.1;
-  /// Squares of estimates over tolerances: below the first steps grow anyhow; above the second
-  /// a pose was hit too closely.
+  /// Squares of estimates over tolerances: below the first steps grow anyhow; above the second a
+  /// stage hit a pose too closely.
   static constexpr double least_suspect = 1e-4, most_rounding = 1e4;
   static constexpr int most_lengthened = 12;  ///< trials of one step
 
@@ -183,8 +182,8 @@ class Trials {
     const double span = end_ - t0_;
     return options_.max_step > 0 ? std::min(options_.max_step, span) : span;
   }
-  /// Below this a stage's time differs from t in its last digits only. Near t = 0 the span counts,
-  /// and of one that is long beside the motion the first step, which is of the motion's own length.
+  /// Step below which a stage's time differs from t in its last digits only. Near t = 0 the span
+  /// counts, or, if that is long beside the motion, the first step.
   double shortest_step(double t) const {
     return 16 * epsilon * std::max(std::abs(t), std::min(1e-6 * (end_ - t0_), first_));
   }
@@ -193,16 +192,16 @@ class Trials {
   const IntegrationOptions& options_;
   ExplicitStep<Tableau>& step_;
   std::optional<ExplicitStep<Tableau>> again_;  ///< from a start one rounding away
-  long again_evaluations_ = 0;                  ///< of those
+  long again_evaluations_ = 0;
   StepControl<Tableau> control_;
   std::size_t n_;
-  double t0_, end_;                                         ///< of the run [s]
+  double t0_, end_;                                         ///< start and end of the run [s]
   double h_ = 0;                                            ///< step tried next [s]
   double first_ = std::numeric_limits<double>::infinity();  ///< the first that was tried [s]
   bool fixed_;
   SingularityHandling handling_ = SingularityHandling::none;
   double first_handled_ = 0;  ///< the step with which singularity handling began [s]
-  int lengthened_ = 0;        ///< trials of this step
+  int lengthened_ = 0;        ///< longer trials of this step
 };
 
 }  // namespace momenta::explicit_rk

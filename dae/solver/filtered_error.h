@@ -23,10 +23,10 @@ class FilteredError {
  public:
   explicit FilteredError(DaeSystem& system);
 
-  /// Takes J and ∂F/∂y' there. False: they have no value, or J is singular.
+  /// Takes J and ∂F/∂y' at (t, y, y'). False: they have no value, or J is singular.
   bool at(double t, const double* y, const double* ydot, double c);
-  /// Root mean square, over all variables, of weighed errors of those that are tested; `h`: of the
-  /// step. Not filtered before at().
+  /// Root mean square, over all variables, of weighted errors of the tested ones, filtered after
+  /// at(); `h`: of the step.
   double norm(const double* e, const double* weights, double h);
 
  private:

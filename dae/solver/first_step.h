@@ -26,9 +26,8 @@ inline double weighted_norm(const double* x, const double* y, const double* atol
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(n, 1)));
 }
 
-/// `f0` is f(t, y); `scale`: the system's time scale. `evaluate(t, y, ydot)` may fail, the trial
-/// step is then shortened. `trial` and `rate` are workspace of size n. The result lies in (0,
-/// longest].
+/// First step in (0, longest]. `f0` is f(t, y); `scale`: the system's time scale. `evaluate(t, y,
+/// ydot)` may fail, the trial step is then shortened. `trial` and `rate` are workspace of size n.
 template <class Evaluate>
 double first_step(int order, double scale, double t, const double* y, const double* f0,
                   const double* atol, double rtol, std::size_t n, double longest, double* trial,
@@ -51,7 +50,7 @@ double first_step(int order, double scale, double t, const double* y, const doub
   const double by_error = largest > 1e-15 ? scale * std::pow(0.01 / largest, 1.0 / order)
                                           : std::max(1e-6 * longest, h * 1e-3);
   const double first = std::min({100 * h, by_error, longest});
-  // Tolerances so small that sizes over them overflow: whatever it is, it is soon shorter.
+  // Tolerances so small that sizes over them overflow: control soon shortens any step.
   return first > 0 && std::isfinite(first) ? first : 1e-6 * longest;
 }
 

@@ -9,7 +9,7 @@ namespace momenta {
 class FixedGrid {
  public:
   FixedGrid(double t0, double step) : t0_(t0), step_(step) {}
-  /// Where the step after `steps` whole ones ends.
+  /// End of the step after `steps` whole ones.
   double next(long steps, double end) const {
     const double grid = t0_ + static_cast<double>(steps + 1) * step_;
     return grid > end - tolerance() ? end : grid;
@@ -18,7 +18,7 @@ class FixedGrid {
   double length(double t, double t1) const {
     return std::abs(t1 - t - step_) <= tolerance() ? step_ : t1 - t;
   }
-  /// Times this near each other are meant as one.
+  /// Distance of times that are meant as one.
   double tolerance() const { return 1e-9 * step_; }
 
  private:

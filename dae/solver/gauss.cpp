@@ -51,7 +51,7 @@ class Gauss {
     }
     start_ = y_;
     for (std::size_t i = 0; i < n_; ++i) {
-      // Kahan's sum: `rounding_` is what y_ is too large by.
+      // Kahan's sum: `rounding_` is the excess of y_.
       const double change = h * increment(stages_, i) - rounding_[i];
       new_[i] = y_[i] + change;
       rounding_[i] = (new_[i] - y_[i]) - change;
@@ -118,7 +118,7 @@ class Gauss {
     return sum;
   }
 
-  /// Stages of a step of length h that starts at the last one's end (`from` 1) or start (0), by its
+  /// Guesses stages of a step of length h from the last one's end (`from` 1) or start (0), by its
   /// polynomial; zero before the first step.
   void guess(gauss::Stages<s>& stages, double h, double from) {
     const double last = t1_ - t0_;

@@ -60,7 +60,7 @@ class Newton {
   }
   bool known() const { return known_; }  ///< whether there is a J
   void forget() { known_ = false; }
-  /// Factors for h, with the J there is. False: singular.
+  /// Factorises for h, with the J at hand. False: singular.
   bool factor(double h) {
     if (factored_for_ == h) return true;
     factored_for_ = 0;
@@ -72,7 +72,7 @@ class Newton {
     factored_for_ = h;
     return true;
   }
-  /// R, n values a stage, becomes ΔZ. Allocates nothing.
+  /// Turns R, n values a stage, into ΔZ. Allocates nothing.
   void solve(double* r) {
     for (std::size_t i = 0; i < n_; ++i) {
       Complex sum = 0;
@@ -102,7 +102,7 @@ class Newton {
   OdeSlopes slopes_;
   std::size_t n_;
   bool known_ = false;
-  double factored_for_ = 0;  ///< h
+  double factored_for_ = 0;  ///< h of the factors
   double real_mu_ = 0;
   Complex mu_;
   std::array<double, s> left_{}, right_{};  ///< row of T⁻¹ and column of T

@@ -25,8 +25,8 @@ namespace momenta::gauss {
 template <int s>
 class Stages {
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  /// Corrections over the unknowns' sizes: here nothing is left to gain; and, once they stop
-  /// shrinking, this much is rounding of f.
+  /// Corrections over the unknowns' sizes: nothing is left to gain at `reached`; once they stop
+  /// shrinking, `rounding` is that of f.
   static constexpr double reached = 2 * epsilon, rounding = 1e-11;
   static constexpr int most_fixed_point = 50, most_newton = 30;
 
@@ -51,9 +51,9 @@ class Stages {
  public:
   Collocation<s> tableau;
   Newton<s> newton;
-  std::vector<double> z, k;  ///< Z_i, a guess on entry, and k_i: n values a stage
-  long evaluations = 0, newton_iterations = 0;  ///< of f at stages; of Newton's corrections
-  std::string cause;                            ///< of a failure
+  std::vector<double> z, k;  ///< n values a stage: Z_i, a guess on entry, and k_i
+  long evaluations = 0, newton_iterations = 0;  ///< f at stages; Newton's corrections
+  std::string cause;
 
   bool solve(double t, double h, const double* y) {
     guess_ = z;
@@ -83,7 +83,6 @@ class Stages {
     return false;
   }
 
-  /// Iterations until corrections are rounding.
   Sweep iterate(double t, double h, const double* y, bool by_newton) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double last = infinity, smallest = infinity;
@@ -95,7 +94,7 @@ class Stages {
         const std::size_t base = at(j) * n_;
         for (std::size_t i = 0; i < n_; ++i) argument_[i] = y[i] + z[base + i];
         ++evaluations;
-        // A stage far off, of an iteration that runs away, may be where f cannot be had.
+        // A diverging iteration may put a stage where f has no value.
         if (!system_.rhs(t + tableau.c[at(j)] * h, argument_.data(), k.data() + base)) {
           cause = system_.failure().empty() ? "an evaluation of the equations failed"
                                             : system_.failure();
@@ -110,8 +109,8 @@ class Stages {
       if (!std::isfinite(size)) return Sweep::no_contraction;
       if (size <= reached) return Sweep::converged;
       if (size >= last && size <= rounding) return Sweep::converged;
-      // Large momenta in a free gauge make corrections grow before they shrink: it is a fall by
-      // four in four iterations that counts.
+      // Large momenta in a free gauge make corrections grow before they shrink: a fall by four in
+      // four iterations counts.
       smallest = std::min(smallest, size);
       double& old = before[static_cast<std::size_t>(count % 4)];
       if (size > rounding && (size > 1e3 * smallest || (count > 8 && size > 0.25 * old)))

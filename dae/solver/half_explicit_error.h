@@ -24,7 +24,7 @@ namespace momenta {
 
 class HalfExplicitError {
  public:
-  /// `gauge` null: there is none.
+  /// `gauge` null: none.
   HalfExplicitError(const DaeSystem& system, const HalfExplicit& parts, GaugeSymmetry* gauge,
                     const IntegrationOptions& options)
       : parts_(parts),
@@ -32,7 +32,7 @@ class HalfExplicitError {
         options_(options),
         norm_(system, options.rtol, options.atol) {}
 
-  /// For the error of a step of length h from (t, y, y'), at whose end z was found last.
+  /// Prepares for the error of a step of length h from (t, y, y'), at whose end z was found last.
   void at(double t, const double* y, const double* ydot, double h) {
     end_ = weakest();
     by_motion_ = gauge_ != nullptr && std::min(start_, end_) < approaching * strongest_;
@@ -46,16 +46,15 @@ class HalfExplicitError {
   }
   bool by_motion() const { return by_motion_; }
 
-  /// The step is taken, the next begins where it ended.
   void accept() {
     start_ = end_;
     strongest_ = std::max(strongest_, end_);
   }
-  /// The next step begins somewhere else, where something is weak still.
+  /// Restarts elsewhere, where a pivot is still weak.
   void restart() { start_ = 0; }
 
  private:
-  static constexpr double approaching = 0.2;  ///< of the weakest pivot at its best
+  static constexpr double approaching = 0.2;  ///< part of the best weakest pivot
 
   double weakest() {
     const HalfExplicit::Pivots last = parts_.pivots();
@@ -69,7 +68,7 @@ class HalfExplicitError {
   WeightedNorm norm_;
   bool by_motion_ = false;
   double start_ = 1, end_ = 1;  ///< weakest pivot at the ends of the step
-  double strongest_ = 0;        ///< the largest of them so far
+  double strongest_ = 0;        ///< largest weakest pivot so far
   int always_faded_ = std::numeric_limits<int>::max();
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // The loop over steps of half-explicit Runge-Kutta methods for y' = f(t, y, z), 0 = g(t, y) of
-// index 2: step control, samples, gauge. What a step's stages are, each method says in its file.
+// index 2: step control, samples, gauge. Each method has its stages in its own file.
 //
 // A step begins with k_1 = f(t, y_0, z_0) of the end of the step before and ends, behind the last
 // stage, with z and f at (t_1, y_1) by the hidden constraint: z at a step's end is of the order of
@@ -37,7 +37,7 @@ struct HalfExplicitState {
                                       ///< stages are summed over whole cache lines
 };
 
-/// `Stages`, of one step:
+/// `Stages`, for one step:
 ///   name; first_step, a part of the span; Control, a tableau with exponents of step control
 ///   Stages(HalfExplicit&)
 ///   bool step(t, h, t1, from, to, counters)   (y_1, z) of `to` from `from`, g(t_1, y_1) = 0
@@ -94,7 +94,7 @@ class HalfExplicitRun {
     return finite(now_);
   }
 
-  /// From y, z and y' as they stand; the step is what it was before.
+  /// Begins from y, z and y' as they stand; the step is kept.
   bool restart(double) {
     control_ = {};
     measure_.restart();
@@ -222,7 +222,7 @@ class HalfExplicitRun {
     ++counters.evaluations;
     return ended(t1, to) || failed();
   }
-  /// z and f where y is.
+  /// z and f at y.
   bool ended(double t, HalfExplicitState& state) {
     parts_.normalise(state.y.data());
     return parts_.consistent(t, state.y.data(), state.y.data() + n_, state.ydot.data());
@@ -234,13 +234,13 @@ class HalfExplicitRun {
 
   DaeSystem& system_;
   HalfExplicit& parts_;
-  GaugeSymmetry* gauge_;  ///< null: there is none
+  GaugeSymmetry* gauge_;  ///< null: none
   const IntegrationOptions& options_;
   HalfExplicitError measure_;
   FixedGrid grid_;
   Stages stages_;
   explicit_rk::StepControl<typename Stages::Control> control_;
-  std::size_t n_, size_;  ///< of y; of (y, z)
+  std::size_t n_, size_;  ///< size of y; of (y, z)
   HalfExplicitState old_, now_, look_;
   double span_, scale_, h_ = 0;  ///< [s]; steps at a start are parts of the scale
   double t0_, t1_;               ///< the last step [s]

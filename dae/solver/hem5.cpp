@@ -81,7 +81,8 @@ class Hem5 {
         for (std::size_t i = 0; i < n_; ++i) out[i] += h * row[j] * k_[j][i];
   }
 
-  /// k_i by the polynomial through stages before it, off by O(h), O(h²), O(h²), O(h³), O(h⁴).
+  /// Foresees k_i by the polynomial through stages before it, off by O(h), O(h²), O(h²), O(h³),
+  /// O(h⁴).
   void foresee(std::size_t i) {
     std::fill(k_[i].begin(), k_[i].end(), 0.0);
     for (std::size_t j = 0; j < i; ++j)

@@ -71,8 +71,8 @@ class Hem8 {
     return parts_.meet(t1, to.y.data());
   }
 
-  /// y of the last step, from t over h to t1, at a fraction of it. Three further stages where it is
-  /// first asked for. Off g by as much as it errs.
+  /// y at a fraction of the last step, from t over h to t1. Evaluates three further stages at the
+  /// first call. Off g by as much as it errs.
   bool between(double t, double h, double t1, double fraction, const HalfExplicitState& from,
                const HalfExplicitState& to, double* y) {
     if (!have_dense_) {
@@ -127,11 +127,11 @@ class Hem8 {
   }
 
   HalfExplicit& parts_;
-  std::size_t n_, m_, stride_;  ///< of y, of z; n in whole cache lines
+  std::size_t n_, m_, stride_;  ///< sizes of y and z; n in whole cache lines
   explicit_rk::AlignedArray stage_, z_, error_;
   explicit_rk::AlignedArray k_;  ///< f of the stages, stride_ apart
   explicit_rk::DenseOutput<TableauDop853> dense_;
-  bool have_dense_ = false;  ///< of the last step
+  bool have_dense_ = false;  ///< dense stages of the last step are there
 };
 
 }  // namespace

@@ -34,9 +34,9 @@
 namespace momenta {
 namespace {
 
-/// Newton stops at this fraction of the error tolerance; IDA's default is 0.33. What Newton leaves
-/// is noise of the error estimate: index-2 forms of Andrews' mechanism need up to 40 % fewer steps
-/// with 0.03 at the same error, and a still smaller value saves nothing more.
+/// Fraction of the tolerance at which Newton stops; IDA's default is 0.33. What Newton leaves is
+/// noise of the error estimate: with 0.03 index-2 forms of Andrews' mechanism need up to 40 % fewer
+/// steps at the same error; less saves no more.
 constexpr double newton_fraction = 0.03;
 
 /// First step over the span. IDA's own guess follows y' over the tolerance and gets so small that
@@ -51,10 +51,10 @@ constexpr int max_error_test_failures = 15;
 constexpr int max_convergence_failures = 15;
 constexpr int highest_order = 5;
 
-/// Steps of order 1 in a row that are accepted only after a rejection, and steps of one length
-/// after them. Where Φ = 0 gives σ, the difference formula of order 1 errs in u by h/2 times what
-/// Φ_q turns by, σ answers, and a step twice as long, by another σ, is off in p; while no two steps
-/// are equally long IDA does not raise the order.
+/// Steps of order 1 in a row accepted only after a rejection, and steps of one length after them.
+/// Where Φ = 0 gives σ, the formula of order 1 errs in u by h/2 times the turn of Φ_q, σ answers,
+/// and a step twice as long, by another σ, is off in p; while no two steps are equally long IDA
+/// does not raise the order.
 constexpr int most_stuck = 10, held_steps = 8;
 
 using sundials::check;
@@ -89,7 +89,7 @@ class Ida {
   Ida& operator=(const Ida&) = delete;
 
   static const char* name() { return "ida"; }
-  /// Of a system that has started.
+  /// @pre the system has started
   const char* linear_solver() const { return matrix_ ? matrix_->linear_solver() : ""; }
   double* y() { return y_.data(); }
   double* ydot() { return ydot_.data(); }
@@ -153,8 +153,7 @@ class Ida {
         cause = "a value that is not a finite number came up";
         return false;
       }
-      // Shortened over and over before a point it cannot pass, it would go on in steps of no
-      // length.
+      // A step shortened over and over before a point it cannot pass would go on without length.
       if (t < end && t - t0 < 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) {
         const std::string inner = inner_cause();
         const double floor = inner.empty() ? floor_.here() : 0;
@@ -169,7 +168,7 @@ class Ida {
     return false;
   }
 
-  /// At order 1, from y and y' as they stand.
+  /// Begins at order 1, from y and y' as they stand.
   bool restart(double t) {
     t0_ = t;
     begin_y_.assign(y_.data(), y_.data() + y_.size());
@@ -264,7 +263,7 @@ class Ida {
     c.newton_iterations += iterations;
   }
 
-  /// After an accepted step.
+  /// Holds the step for a while where order 1 is stuck; after an accepted step.
   void leave_order_one() {
     void* ida = memory_.get();
     long failures = 0;
@@ -286,7 +285,7 @@ class Ida {
     check(IDASetMaxStep(ida, longest), "IDASetMaxStep");
   }
 
-  /// What went wrong in a trial of the present step, if anything did.
+  /// Why a trial of the present step failed, if one did.
   std::string inner_cause() const {
     if (evaluation_failed_) return ": " + evaluation_cause(system_.failure());
     return not_finite_ ? ": a value that is not a finite number came up" : "";
@@ -327,14 +326,14 @@ class Ida {
     }
   }
 
-  /// Whose step is under way: a norm knows nothing but its vectors.
+  /// The object whose step is under way: a norm is given vectors alone.
   static thread_local Ida* testing;
 
   DaeSystem& system_;
   const IntegrationOptions& options_;
   double span_, t0_ = 0, t_end_ = 0;
   double first_step_ = 0;
-  std::vector<double> begin_y_, begin_ydot_;  ///< at t0_, where it last began
+  std::vector<double> begin_y_, begin_ydot_;  ///< at t0_, the last beginning
   sundials::Context context_;                 // before everything made with it
   sundials::Vector y_, ydot_, output_, tolerance_, differential_;
   std::unique_ptr<IdaMatrix> matrix_;
@@ -342,7 +341,7 @@ class Ida {
   std::optional<FilteredError> filtered_;
   sundials::Integrator memory_;
   Counters earlier_attempts_;
-  long failures_ = 0;         ///< of error tests so far
+  long failures_ = 0;         ///< failed error tests
   int stuck_ = 0, held_ = 0;  ///< steps at order 1 after a rejection each; of one length, to come
   bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step
 };

@@ -11,14 +11,14 @@ class IdaMatrix {
  public:
   enum class Filled { yes, not_evaluated, not_finite };
 
-  /// Of a system that has started: which of the three is known then. `like`: a vector of its size.
+  /// @pre the system has started: which of the three is known then. `like`: a vector of its size.
   /// @throws std::invalid_argument when the system's pattern does not fit its size
   IdaMatrix(DaeSystem& system, const sundials::Context& context, N_Vector like);
 
   const char* linear_solver() const { return local_ ? "KLU, local" : sparse_ ? "KLU" : "dense LU"; }
   SUNMatrix matrix() { return local_ ? local_->matrix() : matrix_.get(); }
   SUNLinearSolver solver() { return local_ ? local_->solver() : solver_.get(); }
-  /// At y and y' of the system's size. @pre `matrix` is matrix() or a copy that IDA made of it
+  /// Fills `matrix` at y and y' of the system's size. @pre `matrix` is matrix() or IDA's copy of it
   Filled fill(double t, const double* y, const double* ydot, double c, SUNMatrix matrix);
 
  private:
@@ -26,7 +26,7 @@ class IdaMatrix {
   bool sparse_ = false;
   sundials::Matrix matrix_;
   sundials::LinearSolver solver_;
-  std::unique_ptr<LocalNewton> local_;  ///< in place of the two
+  std::unique_ptr<LocalNewton> local_;  ///< null: one of the other two
 };
 
 }  // namespace momenta

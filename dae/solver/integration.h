@@ -1,5 +1,5 @@
 #pragma once
-// What every integrator takes and returns: options, counters, observers and the result.
+// Options, counters, observers and results of integrators.
 
 #include <momenta/dae/solver/system.h>
 
@@ -10,7 +10,6 @@
 
 namespace momenta {
 
-/// Options of an integrator.
 struct IntegrationOptions {
   double rtol = 1e-8;  ///< relative tolerance of the local error
   double atol = 1e-8;  ///< times the system's scale(i)
@@ -30,7 +29,7 @@ struct IntegrationOptions {
   /// (core/expression/input_times.h).
   std::vector<double> stops{};
 
-  /// The next of them farther behind t than `apart`, or the end.
+  /// The next stop farther behind t than `apart`, or the end.
   double stop_behind(double t, double end, double apart = 0) const {
     const auto next = std::upper_bound(stops.begin(), stops.end(), t + apart);
     return step > 0 || next == stops.end() ? end : std::min(*next, end);
@@ -40,15 +39,14 @@ struct IntegrationOptions {
 /// The work of an integration.
 struct Counters {
   long steps = 0;              ///< accepted
-  long rejected = 0;           ///< steps that were taken again
-  long evaluations = 0;        ///< of right-hand sides or residuals
-  long jacobians = 0;          ///< of Newton's matrices
-  long factorizations = 0;     ///< of (7), or of Newton's matrix
-  long newton_iterations = 0;  ///< of implicit methods
+  long rejected = 0;           ///< steps taken again
+  long evaluations = 0;        ///< right-hand sides or residuals
+  long jacobians = 0;          ///< Newton's matrices
+  long factorizations = 0;     ///< (7), or Newton's matrix
+  long newton_iterations = 0;  ///< implicit methods only
   /// Steps of DAE methods that were taken as an ODE near singular poses; they are among `steps`.
   long ode_restarts = 0;
 
-  /// Adds the work of another integration.
   Counters& operator+=(const Counters& other) {
     steps += other.steps, rejected += other.rejected, evaluations += other.evaluations;
     jacobians += other.jacobians, factorizations += other.factorizations;
@@ -63,27 +61,26 @@ using Interpolant = std::function<void(double t, double* y)>;
 /// Functions that an integrator calls during a run; `sample` and `step` return false to stop it.
 /// Each may be empty.
 struct Observer {
-  /// Called at each requested output time, in order, with the state there: that of the end of the
-  /// step where the times coincide, else from dense output. `ydot` is null for ODE systems.
+  /// Called at each output time, in order, with the state at the end of a step there, else from
+  /// dense output. `ydot` is null for ODE systems.
   std::function<bool(double t, const double* y, const double* ydot)> sample;
   /// Called after each accepted step over [t0, t1]. The interpolant does not include changes made
   /// by after_step().
   std::function<bool(double t0, double t1, const Interpolant& between)> step;
-  /// Called once, before the first step, by methods whose steps' ends are more accurate than their
-  /// interpolant: with another one of the last step, of full order, whose every value costs a step.
+  /// Called once, before the first step, by methods whose interpolant is less accurate than their
+  /// steps' ends, with another of full order, whose every value costs a step.
   std::function<void(const Interpolant& exact)> exact;
   /// Called before steps of explicit Runge-Kutta methods, where can_be_put_down() holds. `carry`
   /// writes all that the run carries at t, for IntegrationOptions::carried.
   std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;
 };
 
-/// How an integration ended.
 struct IntegrationResult {
   bool done = false;      ///< the end was reached
   std::string reason;     ///< one sentence when not done: what failed, at which time, why
-  double end_time = 0;    ///< time at which the run stopped [s]
-  std::vector<double> y;  ///< the state there
-  Counters counters;      ///< of the whole integration
+  double end_time = 0;    ///< [s]
+  std::vector<double> y;  ///< state there
+  Counters counters;
   /// Time [s] since which stability, not the tolerance, limits the steps of an explicit method;
   /// NaN: it does not.
   double stiff_from = std::numeric_limits<double>::quiet_NaN();

@@ -190,8 +190,7 @@ std::string resetting_names() {
 
 namespace {
 
-/// A system without unknowns: time passes, and there is nothing for a method to do. Everything may
-/// be welded or driven.
+/// Passes time for a system without unknowns: everything may be welded or driven.
 IntegrationResult pass_time(double t0, const std::vector<double>& output_times,
                             const Observer& observer) {
   IntegrationResult result;

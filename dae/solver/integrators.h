@@ -1,5 +1,5 @@
 #pragma once
-// The integrators by name: which systems each takes, how it steps, and the one function that calls
+// The integrators by name: the systems each takes, its kind of steps, and the function that calls
 // it. Options, messages, studies and `momenta --help` take them from here.
 
 #include <momenta/dae/solver/integration.h>
@@ -10,46 +10,42 @@
 
 namespace momenta {
 
-/// One integrator.
 struct Integrator {
-  /// Kinds of systems.
   enum class Takes {
     ode,  ///< y' = f(t, y)
     dae,  ///< F(t, y, y') = 0
   };
-  /// Kinds of steps.
   enum class Step {
     adaptive,  ///< by the local error
     fixed      ///< IntegrationOptions::step
   };
 
-  std::string name;    ///< as in options and tables
-  Takes takes;         ///< ODEs or DAEs
-  Step step;           ///< adaptive or fixed
+  std::string name;  ///< as in options and tables
+  Takes takes;
+  Step step;
   bool multistep;      ///< keeps a history, which a gauge reset or flip would invalidate
   bool projects;       ///< states may be corrected onto the constraints after each step
-  std::string method;  ///< its description, one line
-  std::vector<std::string> forms;  ///< the forms it takes; empty: all of its kind
-  bool resets = false;             ///< of DAE methods: takes gauge reset
-  /// Gauges that DAE methods take where none is asked for.
+  std::string method;  ///< description, one line
+  std::vector<std::string> forms;  ///< forms it takes; empty: all of its kind
+  bool resets = false;             ///< takes gauge reset (DAE methods)
+  /// Gauges that DAE methods take by default.
   enum class Preferred {
     leak,
     reset,
     reset_of_independent  ///< reset, or leak where loops are redundant
   };
-  Preferred gauge = Preferred::leak;  ///< of DAE methods, for studies of cost
-  /// The forms of which it solves Φ = 0 for positions alone, so that rows of rates have no place.
+  Preferred gauge = Preferred::leak;  ///< default gauge of DAE methods in studies of cost
+  /// Forms whose Φ = 0 it solves for positions alone, so that rows of rates have no place.
   std::vector<std::string> closes = {};
-  /// Steps on the parts of H(q, p): no σ is in its p, so that runs say gauge reset, and no
-  /// accelerations are found, which friction by reaction takes.
+  /// Whether it steps on the parts of H(q, p): no σ is in its p, so that runs say gauge reset, and
+  /// no accelerations are found, which friction by reaction takes.
   bool hamiltonian = false;
 
-  /// Whether it takes the named form; `dae` says whether that form is a DAE.
+  /// `dae`: whether the form is a DAE.
   bool takes_form(const std::string& wanted, bool dae) const {
     return (takes == Takes::dae) == dae &&
            (forms.empty() || std::find(forms.begin(), forms.end(), wanted) != forms.end());
   }
-  /// Whether it is one of `closes`.
   bool closes_form(const std::string& form) const {
     return std::find(closes.begin(), closes.end(), form) != closes.end();
   }
@@ -57,13 +53,13 @@ struct Integrator {
 
 /// All integrators, in the order of the tables.
 const std::vector<Integrator>& integrators();
-/// The integrator of this name. @throws std::invalid_argument listing all names for an unknown one.
+/// @throws std::invalid_argument listing all names for an unknown one.
 const Integrator& integrator(const std::string& name);
 /// "a, b or c".
 std::string listed(const std::vector<std::string>& names);
-/// The names of the integrators that take such systems, listed.
+/// Names of the integrators that take such systems, listed.
 std::string integrator_names(Integrator::Takes takes);
-/// The names of those for DAEs that take gauge reset, listed.
+/// Names of the DAE integrators that take gauge reset, listed.
 std::string resetting_names();
 
 /// Integrates y' = f(t, y) from y0 by the named method. @throws std::invalid_argument for a method

@@ -14,7 +14,7 @@ namespace momenta {
 
 class LocalNewton {
  public:
-  /// `size`: of J.
+  /// `size`: that of J.
   LocalNewton(LocalJacobian& jacobian, int size, const sundials::Context& context);
   LocalNewton(const LocalNewton&) = delete;
   LocalNewton& operator=(const LocalNewton&) = delete;
@@ -30,7 +30,7 @@ class LocalNewton {
 
   LocalJacobian& jacobian_;
   std::size_t size_;
-  int version_ = 0;  ///< of the pattern in newton_
+  int version_ = 0;  ///< version of the pattern in newton_
   std::unique_ptr<NewtonMatrix<double>> newton_;
   std::vector<double> work_;
   sundials::Matrix matrix_;

@@ -21,15 +21,15 @@ namespace momenta {
 
 class LocalShare {
  public:
-  /// Of a run over `span` [s] at a relative tolerance.
+  /// For a run over `span` [s] at a relative tolerance.
   LocalShare(double span, double rtol)
       : span_(span),
         least_(std::min(1.0, 1e3 * std::numeric_limits<double>::epsilon() / rtol)),
         mean_(span / steps) {}
 
-  /// Between 0 and 1.
+  /// The share, between 0 and 1.
   double now() const { return std::clamp(steps * mean_ / span_, least_, 1.0); }
-  /// After a step of h [s].
+  /// Notes a step of h [s].
   void passed(double h) { mean_ += (std::min(h, span_ / steps) - mean_) / memory; }
 
  private:

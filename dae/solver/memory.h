@@ -1,7 +1,7 @@
 #pragma once
-// What a run carries from one step to the next, as numbers: written down between two steps and read
-// back into new objects of the same sizes, the run goes on as if nothing had been between, to the
-// last bit. Every part lists what it carries once, for both ways.
+// State of a run between two steps, as numbers: written down and read back into new objects of the
+// same sizes, the run goes on to the last bit as if nothing had been between. Every part lists what
+// it carries once, for both ways.
 
 #include <cstddef>
 #include <stdexcept>
@@ -13,9 +13,9 @@ namespace momenta {
 
 class Memory {
  public:
-  /// To write down.
+  /// Writes down.
   Memory() = default;
-  /// To read back.
+  /// Reads back.
   explicit Memory(std::vector<double> numbers) : numbers_(std::move(numbers)), reads_(true) {}
 
   bool reads() const { return reads_; }

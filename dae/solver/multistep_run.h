@@ -1,7 +1,7 @@
 #pragma once
-// What runs of CVODE, IDA and our implicit methods share: one internal step at a time up to a stop
-// time, the observer after each, output times by the method's own dense output, limits, and where
-// the run ended.
+// Runs of CVODE, IDA and our implicit methods: one internal step at a time up to a stop time, the
+// observer after each, output times by the method's own dense output, limits, and where the run
+// ended.
 
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/output_cursor.h>
@@ -41,7 +41,7 @@ class MultistepRun {
 
   double end() const { return outputs_.end(); }
 
-  /// Steps to the end. Fills everything of the result but the counters.
+  /// Steps to the end. Fills the result but for its counters.
   void run(IntegrationResult& result) {
     stop_time_ = t_;
     result.done = sample_start(result) && steps(result);
@@ -87,9 +87,9 @@ class MultistepRun {
     return true;
   }
 
-  /// Stops nearer than this are those before and behind a jump (core/expression/input_times.h).
-  /// Methods that evaluate nothing at a step's start need no step across it, by whose length
-  /// multipliers would be divided.
+  /// Distance of stops before and behind a jump (core/expression/input_times.h). Methods that
+  /// evaluate nothing at a step's start need no step across it, by whose length multipliers would
+  /// be divided.
   double jump() const {
     if constexpr (requires { Method::takes_start; })
       return 0;

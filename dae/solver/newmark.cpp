@@ -10,7 +10,7 @@
 namespace momenta {
 namespace {
 
-constexpr double newton_fraction = 1e-3;  ///< of the tolerance
+constexpr double newton_fraction = 1e-3;  ///< share of the tolerance
 constexpr double fast_enough = 0.3;       ///< contraction with a matrix of an earlier step
 constexpr int most_iterations = 20;
 constexpr int most_projections = 6;
@@ -112,7 +112,7 @@ bool Newmark::sample(double t, double* y, double* ydot) {
   return true;
 }
 
-/// From old_ at t over h into `next`.
+/// Solves a step from old_ at t over h into `next`.
 bool Newmark::solve(double t, double h, State& next, Factored& matrix, Counters& counters) {
   norm_.set(old_.y.data(), h);
   bool fresh = false;
@@ -130,13 +130,13 @@ bool Newmark::solve(double t, double h, State& next, Factored& matrix, Counters&
       if (!std::isfinite(size)) break;
       const double ratio = count > 1 ? size / last : 0;
       last = size;
-      // The remaining error is about ratio/(1 − ratio) of the correction; one is not trusted
-      // alone.
+      // The remaining error is about ratio/(1 − ratio) of the correction; one correction is not
+      // trusted alone.
       if (size <= norm_.rounding() ||
           (count > 1 && ratio < 0.9 && size * ratio / (1 - ratio) <= newton_fraction)) {
         place(h, next);
-        // An earlier step's matrix would do for Newton's method; projections along its directions
-        // would err by its age, and cost an order.
+        // An earlier step's matrix would do for Newton's method; projections by it would err by its
+        // age, and cost an order.
         if (rule_.augmented)
           return differentiate(t, h, next, matrix, counters) &&
                  project(t + h, next, *matrix.matrix);
@@ -153,13 +153,13 @@ bool Newmark::solve(double t, double h, State& next, Factored& matrix, Counters&
   }
 }
 
-/// The accelerations and multipliers of the step's start.
+/// Guesses with the accelerations and multipliers of the step's start.
 void Newmark::guess(State& next) {
   std::copy_n(old_.ydot.begin(), n_, next.ydot.begin());
   std::copy_n(old_.y.begin(), n_, next.y.begin());
 }
 
-/// a, q, v and q̇ at the end from v̇ there.
+/// Sets a, q, v and q̇ at the end from v̇ there.
 void Newmark::place(double h, State& next) {
   const double *old_v = old_.y.data() + nq_, *old_vdot = old_.ydot.data() + nq_;
   const double* vdot = next.ydot.data() + nq_;
@@ -190,7 +190,7 @@ bool Newmark::correct(double t, double h, State& next, NewtonMatrix<double>& mat
   ++counters.evaluations;
   if (!system_.residual(t + h, next.y.data(), next.ydot.data(), residual_.data()))
     return evaluation_failed();
-  // Redundant loops need nothing beside the penalty: Φ itself, without ε λ.
+  // Redundant loops need the penalty alone: Φ itself, without ε λ.
   if (rule_.augmented) order_.constraints(t + h, next.y.data(), residual_.data() + nq_ + nv_);
   for (std::size_t row = 0; row < n_; ++row)
     residual_[row] = row < nq_ ? 0 : -row_scale(row, h) * residual_[row];
@@ -203,9 +203,9 @@ bool Newmark::correct(double t, double h, State& next, NewtonMatrix<double>& mat
   return true;
 }
 
-/// v onto Φ̇ = 0, then v̇ onto Φ̈ = 0. A right-hand side b of the scaled matrix in the rows of Φ alone
-/// has a solution with Φ_q w = b in w = (β/γ) times its part of v. Repeated
-/// until it is rounding, since the penalty leaves a part in 1/penalty.
+/// Takes v onto Φ̇ = 0, then v̇ onto Φ̈ = 0. A right-hand side b of the scaled matrix in the rows
+/// of Φ alone has a solution with Φ_q w = b in w = (β/γ) times its part of v. Repeated to rounding,
+/// as the penalty leaves a part in 1/penalty.
 bool Newmark::project(double t, State& next, NewtonMatrix<double>& matrix) {
   const double *q = next.y.data(), factor = rule_.beta / rule_.gamma;
   double *v = next.y.data() + nq_, *vdot = next.ydot.data() + nq_;

@@ -1,5 +1,5 @@
 #pragma once
-// What methods of Newmark's family share, on equations of index 3 in q, v; λ, fixed steps:
+// Base of the methods of Newmark's family, on equations of index 3 in q, v; λ, fixed steps:
 //
 //   q_{n+1} = q_n ∘ exp(h v_n + h² ((½ − β) a_n + β a_{n+1}))
 //   v_{n+1} = v_n + h ((1 − γ) a_n + γ a_{n+1})
@@ -50,7 +50,8 @@ class Newmark {
   bool step(double& t, double end, std::string& cause);
   /// Hermite's cubic for q and v; λ along a line.
   bool at(double t, double* y, double*);
-  /// The step from the last one's start to an output time; the cubic where that does not converge.
+  /// Takes the step from the last one's start to an output time; the cubic where that does not
+  /// converge.
   bool sample(double t, double* y, double* ydot);
 
  private:
@@ -58,8 +59,7 @@ class Newmark {
   struct State {
     std::vector<double> y, ydot, a;
   };
-  /// The Newton matrix, the version of the local pattern in it, and the step it was made for; 0:
-  /// none yet.
+  /// The Newton matrix, the version of the local pattern in it, and its step; 0: none yet.
   struct Factored {
     std::unique_ptr<NewtonMatrix<double>> matrix;
     int version = 0;
@@ -77,7 +77,7 @@ class Newmark {
   bool correct(double t, double h, State& next, NewtonMatrix<double>& matrix, Counters& counters);
   bool project(double t, State& next, NewtonMatrix<double>& matrix);
   bool evaluation_failed();
-  /// b (n) ← the part in y of A⁻¹ ( b; 0 ).
+  /// b (n) ← the part of A⁻¹ ( b; 0 ) in y.
   void solve_with(NewtonMatrix<double>& matrix, double* b);
   double row_scale(std::size_t row, double h) const {
     return row < nq_ ? h : (row < nq_ + nv_ ? h * h : 1);
@@ -97,18 +97,18 @@ class Newmark {
   State old_, now_, look_;
   std::vector<double> residual_, correction_, delta_, by_y_, by_rate_;
   std::vector<double> rate_factors_, padded_;  ///< with local_
-  int version_ = 0;                            ///< of the local pattern laid out
-  JacobianPattern pattern_;            ///< the given one, with the diagonal of λ where augmented
-  std::vector<std::size_t> place_of_;  ///< of the system's entries among the matrix's
-  std::vector<std::size_t> diagonal_;  ///< of the rows of λ
+  int version_ = 0;                            ///< version of the local pattern laid out
+  JacobianPattern pattern_;            ///< the system's, with the diagonal of λ where augmented
+  std::vector<std::size_t> place_of_;  ///< places of the system's entries in the matrix
+  std::vector<std::size_t> diagonal_;  ///< places of the diagonal of λ
   Factored run_matrix_, look_matrix_;
   double t0_, t1_;  ///< the last step [s]
   std::string cause_;
   Counters counters_;
 };
 
-/// Runs it from the system's own start. @throws std::invalid_argument with a sentence for a system
-/// that is not of second order, or a step or tolerance that is not positive.
+/// Runs the method from the system's own start. @throws std::invalid_argument with a sentence for a
+/// system that is not of second order, or a step or tolerance that is not positive.
 IntegrationResult integrate_newmark(const char* name, const NewmarkRule& rule, DaeSystem& system,
                                     double t0, const std::vector<double>& output_times,
                                     const IntegrationOptions& options, const Observer& observer);

@@ -1,4 +1,4 @@
-// The Newton matrix of Newmark's family: laid out, differentiated, scaled, solved with.
+// The Newton matrix of Newmark's family: its layout, derivatives, scales and solutions.
 
 #include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/multistep_run.h>
@@ -12,7 +12,7 @@ const JacobianPattern& Newmark::given() const {
   return local_ != nullptr ? local_->pattern() : system_.pattern();
 }
 
-/// The given pattern, with places on the diagonal of λ where there is a penalty.
+/// Lays out the given pattern, with the diagonal of λ where there is a penalty.
 void Newmark::lay_out_matrix() {
   const JacobianPattern& given = this->given();
   pattern_ = given;
@@ -46,7 +46,7 @@ void Newmark::lay_out_matrix() {
   }
 }
 
-/// The scaled matrix at the present guess.
+/// Makes the scaled matrix at the present guess.
 bool Newmark::differentiate(double t, double h, State& next, Factored& matrix, Counters& counters) {
   place(h, next);
   ++counters.jacobians;
@@ -87,7 +87,7 @@ bool Newmark::differentiate(double t, double h, State& next, Factored& matrix, C
   return matrix.step != 0;
 }
 
-/// The local matrix at `next`, into local_, and a place for it in `matrix`.
+/// Makes the local matrix at `next`, in local_, and a place for it in `matrix`.
 bool Newmark::take_local(double t, const State& next, double c_q, double c_v, Factored& matrix) {
   std::fill_n(rate_factors_.begin(), nq_, c_q);
   std::fill_n(rate_factors_.data() + nq_, nv_, c_v);

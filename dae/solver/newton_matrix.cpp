@@ -48,8 +48,8 @@ class DenseMatrix final : public NewtonMatrix<Scalar> {
   long choices_ = 0;
 };
 
-/// Old pivots are given up where the entries grow on them by more than this, and by that much more
-/// than on pivots just chosen: those of local matrices of long ladders grow by 10⁶ on any.
+/// Old pivots are given up where entries grow on them by more than `most_growth` and by
+/// `beside_fresh` times more than on fresh ones: local matrices of long ladders grow by 10⁶ on any.
 constexpr double most_growth = 1e4, beside_fresh = 100;
 
 template <class Scalar>
@@ -106,10 +106,10 @@ class SparseMatrix final : public NewtonMatrix<Scalar> {
   }
 
  private:
-  /// Pairs of real and imaginary part for complex entries, as the standard lays them out.
+  /// Entries as doubles; complex ones are pairs of real and imaginary part, by the standard.
   double* numbers() { return reinterpret_cast<double*>(a_.data()); }
 
-  /// The old pivots on the new values.
+  /// Factorises new values on the old pivots.
   bool again() {
     int* start = column_start_.data();
     if constexpr (is_real)
@@ -119,7 +119,7 @@ class SparseMatrix final : public NewtonMatrix<Scalar> {
     return common_.status == KLU_OK &&
            growth() < std::max(most_growth, beside_fresh * fresh_growth_);
   }
-  /// Of the entries, from A to U: the largest over the columns. Infinite where it is not known.
+  /// Largest growth of entries from A to U over the columns. Infinite where it is not known.
   double growth() {
     int* start = column_start_.data();
     int known = 0;
@@ -158,7 +158,8 @@ std::unique_ptr<NewtonMatrix<Scalar>> make_newton_matrix(int size, const Jacobia
   return std::make_unique<SparseMatrix<Scalar>>(size, pattern);
 }
 
-/// Zeros all over the diagonal: AMD's order is for pivots on it, and those KLU then takes fill.
+/// Local matrices have zeros all over the diagonal: AMD's order is for pivots on it, and those KLU
+/// then takes fill.
 template <class Scalar>
 std::unique_ptr<NewtonMatrix<Scalar>> make_local_matrix(const JacobianPattern& pattern) {
   using Matrix = SparseMatrix<Scalar>;

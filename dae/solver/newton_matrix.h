@@ -13,13 +13,13 @@ template <class Scalar>  // double or std::complex<double>
 class NewtonMatrix {
  public:
   virtual ~NewtonMatrix() = default;
-  /// Dense: column-major n × n. Sparse: in the order of the pattern.
+  /// Values to fill. Dense: column-major n × n. Sparse: in the order of the pattern.
   virtual Scalar* values() = 0;
   /// False when the matrix is singular or not finite. Dense O(n³).
   virtual bool factor() = 0;
   /// b ← A⁻¹ b, n values. Allocates nothing.
   virtual void solve(Scalar* b) = 0;
-  /// Factorisations for which pivots were chosen anew: all dense ones.
+  /// Factorisations with fresh pivots: all dense ones.
   virtual long choices() const = 0;
 };
 
@@ -28,8 +28,8 @@ class NewtonMatrix {
 template <class Scalar>
 std::unique_ptr<NewtonMatrix<Scalar>> make_newton_matrix(int size, const JacobianPattern& pattern);
 
-/// KLU with columns in COLAMD's order, as a matrix of LocalJacobian takes it best; factors of a
-/// ladder of crossed bars then grow like its bars. The pattern must outlive the matrix.
+/// KLU with columns in COLAMD's order, best for a matrix of LocalJacobian: factors of a ladder of
+/// crossed bars then grow like its bars. The pattern must outlive the matrix.
 template <class Scalar = double>
 std::unique_ptr<NewtonMatrix<Scalar>> make_local_matrix(const JacobianPattern& pattern);
 
@@ -55,7 +55,7 @@ inline void add_product(const JacobianPattern& pattern, const std::vector<double
   }
 }
 
-/// As results name it.
+/// Name of the solver in results.
 inline const char* linear_solver_name(const JacobianPattern& pattern) {
   return pattern.column_start.empty() ? "dense LU" : "KLU";
 }

@@ -78,7 +78,7 @@ class WithOdeRestarts {
   }
 
  private:
-  /// More are no way past a pose.
+  /// Longest way past a pose.
   static constexpr long most_steps = 2000;
 
   struct Place {
@@ -92,7 +92,7 @@ class WithOdeRestarts {
     return true;
   }
 
-  /// The way from t to where no pivot is weak any more, or to the end. False where none is made: no
+  /// Plans the way from t to where no pivot is weak, or to the end. False where there is none: no
   /// pivot is weak at t, or the way fails, or is too long for a pose to be passed.
   bool plan(double t, double end) {
     if (on_a_grid_ || !system_.near_singular(t, method_.y())) return false;
@@ -100,7 +100,7 @@ class WithOdeRestarts {
     way_.clear();
     next_ = 0;
     way_.push_back({t, {method_.y(), method_.y() + n_}, {method_.ydot(), method_.ydot() + n_}});
-    // A form that drifts is off the constraints, where no two motions meet: back onto them first.
+    // A form that drifts is off the constraints, where no two motions meet: closes the loops first.
     bool changed = false, behind = false;
     bool good = ode.after_step(t, state_.data(), changed);
     Observer observer;
@@ -127,7 +127,7 @@ class WithOdeRestarts {
     return good;
   }
 
-  /// From the step's start once more, to a time inside it.
+  /// Steps from the step's start once more, to a time inside it.
   bool between(double t, double* y, double* ydot) {
     const bool at_end = t == way_[next_].t;
     const Place& from = way_[at_end ? next_ : next_ - 1];
@@ -138,7 +138,7 @@ class WithOdeRestarts {
       IntegrationOptions options = options_;
       options.initial_step = t - from.t;
       OdeSystem& ode = *system_.ode_restart(from.t, from.y.data(), state_.data());
-      // What the form has met so far is the run's, not that of looking at it.
+      // Evaluations of this look do not count for the run.
       Memory met;
       ode.carry(met);
       const IntegrationResult run =
@@ -155,16 +155,16 @@ class WithOdeRestarts {
   DaeSystem& system_;
   IntegrationOptions options_;
   std::vector<double> state_, look_, look_rate_;
-  std::vector<Place> way_;  ///< ends of its steps, before them where it began
+  std::vector<Place> way_;  ///< its start, then the ends of its steps
   std::size_t next_ = 0, n_;
   bool on_a_grid_;  ///< fixed steps: no ODE restarts
   bool under_way_ = false;
-  double not_before_ = -std::numeric_limits<double>::infinity();  ///< after a way that failed [s]
+  double not_before_ = -std::numeric_limits<double>::infinity();  ///< after a failed way [s]
   long steps_ = 0, evaluations_ = 0;
 };
 
-/// Steps of a method that has started, to the last output time, with ODE restarts: everything of
-/// the result but the method's own counters.
+/// Steps a started method to the last output time, with ODE restarts; fills the result but for the
+/// method's own counters.
 template <class Method>
 void run_with_ode_restarts(Method& method, DaeSystem& system, double t0,
                            const std::vector<double>& output_times,
@@ -176,8 +176,8 @@ void run_with_ode_restarts(Method& method, DaeSystem& system, double t0,
   run.count(result.counters);
 }
 
-/// The same, and the counters, of a method whose start() said `started`; where it did not, why, in
-/// the words of `failure`. A method that is implicit has linear_solver(), with the exact Jacobian.
+/// The same with counters, of a method whose start() said `started`; if it did not, the result says
+/// why, in the words of `failure`. An implicit method has linear_solver(), with the exact Jacobian.
 template <class Method>
 IntegrationResult run_from_start(Method& method, bool started, const std::string& failure,
                                  DaeSystem& system, double t0,

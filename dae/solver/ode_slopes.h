@@ -1,5 +1,5 @@
 #pragma once
-// ∂f/∂y of y' = f(t, y) for Newton's methods, and what they solve with it,
+// ∂f/∂y of y' = f(t, y) for Newton's methods, and their linear systems,
 //
 //   w − s ∂f/∂y w = r,      s real or complex.
 //
@@ -25,21 +25,21 @@ class OdeSlopes {
   explicit OdeSlopes(OdeSystem& system)
       : system_(system), f_(static_cast<std::size_t>(system.size())) {}
 
-  /// At (t, y). `rate` [1/s], of the size of 1/s above, balances G₀ and G₁ in one evaluation.
-  /// False: `cause` says why. Dense n + 1 right-hand sides, else O(entries).
+  /// Evaluates at (t, y). `rate` [1/s], of the size of 1/s above, balances G₀ and G₁ in one
+  /// evaluation. False: `cause` says why. Dense n + 1 right-hand sides, else O(entries).
   bool evaluate(double t, const double* y, double rate);
   const std::string& cause() const { return cause_; }
-  long evaluations() const { return evaluations_; }  ///< of f, so far
+  long evaluations() const { return evaluations_; }  ///< evaluations of f
 
   int size() const { return system_.size(); }
   // After the first evaluate():
-  int unknowns() const;                    ///< of y, x and z
-  const JacobianPattern& pattern() const;  ///< of G₀ and G₁; empty: dense by columns
-  int version() const;                     ///< of the pattern, ascending
+  int unknowns() const;                    ///< size of y, x and z
+  const JacobianPattern& pattern() const;  ///< pattern of G₀ and G₁; empty: dense by columns
+  int version() const;                     ///< version of the pattern, ascending
   const std::vector<double>& by_y() const { return by_y_; }        ///< G₀
   const std::vector<double>& by_rate() const { return by_rate_; }  ///< G₁
 
-  /// As results name them.
+  /// Names in results.
   const char* linear_solver() const { return local_ ? "KLU, local" : "dense LU"; }
   const char* jacobian() const { return local_ ? "dual numbers" : "difference quotient"; }
 
@@ -49,7 +49,7 @@ class OdeSlopes {
   bool by_differences(double t, const double* y);
 
   OdeSystem& system_;
-  bool asked_ = false;              ///< the system for its local matrix
+  bool asked_ = false;              ///< the system was asked for its local matrix
   LocalJacobian* local_ = nullptr;  ///< null: differences
   JacobianPattern dense_;
   std::vector<double> by_y_, by_rate_, f_, moved_, y_;
@@ -61,14 +61,14 @@ class OdeSlopes {
 template <class Scalar>  // double or std::complex<double>
 class Resolvent {
  public:
-  /// Of slopes as they were last evaluated; they must outlive it. False: singular or not finite.
+  /// Factorises slopes as last evaluated; they must outlive it. False: singular or not finite.
   bool factor(const OdeSlopes& slopes, Scalar s);
-  /// r (n) becomes w. Allocates nothing.
+  /// Turns r (n) into w. Allocates nothing.
   void solve(Scalar* r);
 
  private:
   const OdeSlopes* slopes_ = nullptr;
-  int version_ = -1;  ///< of the pattern in matrix_
+  int version_ = -1;  ///< version of the pattern in matrix_
   std::unique_ptr<NewtonMatrix<Scalar>> matrix_;
   std::vector<Scalar> work_;
 };

@@ -27,7 +27,7 @@ class OutputCursor {
   double time() const { return times_[next_]; }
   void advance() { ++next_; }
 
-  /// Whether there is a next output time and it is not after t.
+  /// Whether the next output time is not after t.
   bool due(double t) const { return !done() && time() <= t; }
 
   void carry(Memory& memory) { memory(next_); }

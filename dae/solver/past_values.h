@@ -1,5 +1,5 @@
 #pragma once
-// What a multistep method remembers: the last values y_{n−1}, y_{n−2}, … with their times, and the
+// Past of a multistep method: the last values y_{n−1}, y_{n−2}, … with their times, and the
 // polynomials ω through them in Lagrange's form.
 //
 // Values and not differences, so that the gauge of σ can be changed for all of them at once:
@@ -17,23 +17,23 @@ class PastValues {
  public:
   static constexpr int most = 8;  ///< values
 
-  /// Of y with `size` numbers; `gauge` null where it is not to be shifted.
+  /// Values of `size` numbers; `gauge` null where they are not to be shifted.
   PastValues(int size, GaugeSymmetry* gauge);
 
-  /// Only this value.
+  /// Keeps only this value.
   void begin(double t, const double* y);
-  /// A newest value; the oldest goes where there are `most`.
+  /// Adds a newest value; the oldest goes where there are `most`.
   void add(double t, const double* y);
-  /// The value k back, 0 the newest, in place of what is there; k ≤ count().
+  /// Overwrites the value k back, 0 the newest; k ≤ count().
   void put(int k, double t, const double* y);
   int count() const { return count_; }
 
   double time(int k) const { return at(k).t; }
   const double* value(int k) const { return at(k).y.data(); }
 
-  /// Every value in another gauge, by the same c.
+  /// Takes every value into another gauge, by the same c.
   void shift(const double* c);
-  /// The gauge in which the newest σ is zero.
+  /// Takes all values into the gauge in which the newest σ is zero.
   void reset();
 
   /// ω(t) and, not null, ω'(t) through the `degree` + 1 newest values; degree < count().

@@ -34,12 +34,12 @@ namespace {
 using namespace radau5;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
-/// Newton contracts this fast: the derivatives serve another step.
+constexpr double first_step_fraction = 1e-4;  ///< part of the span, as with IDA
+/// Contraction of Newton's method at which derivatives serve another step.
 constexpr double fast = 1e-3;
-/// What the start of a step misses of constraints is divided by the step's length, in λ of index 3
-/// twice: no sample of higher index takes a step shorter than this part of those around it, and no
-/// last step is shorter than `short_rest` of the one before.
+/// The gap of constraints at a step's start is divided by its length, in λ of index 3 twice: no
+/// sample of higher index takes a step shorter than this part of those around it, and no last step
+/// is shorter than `short_rest` of the one before.
 constexpr double short_sample = 0.25, short_rest = 0.125;
 
 class Radau5 {
@@ -84,7 +84,7 @@ class Radau5 {
     h_ = std::min(h_, longest());
   }
 
-  /// From y and y' as they stand; the step is what it was before.
+  /// Begins from y and y' as they stand; the step is kept.
   bool restart(double) {
     first_ = changed_ = true;
     have_derivatives_ = false;
@@ -108,7 +108,7 @@ class Radau5 {
       const double t1 = step_end(t, end);
       if (options_.step > 0 && rejected_ && have_derivatives_)
         return cause = failure_ + ", with a step of " + in_words(options_.step) + " s", false;
-      // The floor of the step is met by rounding alone, not where the run ends.
+      // The least step is rounding, unless the run ends there.
       if (h_ <= 16 * epsilon * std::max(std::abs(t), 1e-6 * scale_) && t1 < end)
         return cause = failure_ + ", also with a step of " + in_words(h_) + " s", false;
       if (!have_derivatives_ && !differentiate(t)) return cause = failure_, false;
@@ -161,8 +161,8 @@ class Radau5 {
     return gauge != nullptr && gauge->impulse_count() > 0 ? gauge : nullptr;
   }
 
-  /// As far as weights tell it. Multipliers that no norm sees are one worse than what it sees;
-  /// alone they are told from q and u, and do not count.
+  /// Index as far as weights tell it. Multipliers in no norm are one worse than what it sees; alone
+  /// they are told from q and u, and do not count.
   static int index_of(const DaeSystem& system) {
     int most = 0, least = 0;
     for (int k = 0; k < system.size(); ++k) {
@@ -202,7 +202,7 @@ class Radau5 {
     return have_derivatives_;
   }
 
-  /// One trial. False: h_ and what is to be done anew are set.
+  /// One trial. False: sets h_ and what to make anew.
   bool attempt(double t, double t1) {
     if (changed_ || !have_factors_) {
       counters_.factorizations += 2;
@@ -271,8 +271,8 @@ class Radau5 {
     first_ = rejected_ = false;
   }
 
-  /// Starting values for stages of the next step, of length h: the last step's polynomial
-  /// prolonged; before the first step a straight line.
+  /// Guesses stages of the next step, of length h, by the last step's polynomial; before the first
+  /// step by a straight line.
   void guess(StageValues& z, double h) const {
     for (std::size_t k = 0; k < n_; ++k)
       for (std::size_t i = 0; i < 3; ++i)
@@ -280,7 +280,7 @@ class Radau5 {
             first_ ? c[i] * h * ydot0_[k] : polynomial(z_, k, 1 + c[i] * h / done_) - z_[2][k];
   }
 
-  /// A step to a time inside the last one, from its start or the one before; false where there is
+  /// Steps to a time inside the last step, from its start or the one before; false where there is
   /// none, or where it does not converge.
   bool step_to(double t, double* y, double* ydot) {
     const double before = t0_ - earlier_t_;
@@ -299,7 +299,7 @@ class Radau5 {
     error_.forget();
     const WeightedNorm& norm = error_.norm(start.data(), h);
     error_.forget();
-    // The cubic, and that of the step before, whose stages the trial of this step has left.
+    // The cubic, and that of the step before: the trial of this step has left its stages.
     for (std::size_t i = 0; i < 3; ++i) {
       const double part = (early ? from - t0_ : 0) / done_ + c[i] * h / done_;
       for (std::size_t k = 0; k < n_; ++k)
@@ -311,7 +311,7 @@ class Radau5 {
   }
 
   DaeSystem& system_;
-  GaugeSymmetry* gauge_;  ///< null: there is none
+  GaugeSymmetry* gauge_;  ///< null: none
   std::optional<StagesInGauge> stages_in_gauge_;
   const IntegrationOptions& options_;
   double span_, scale_;  ///< [s]; steps at a start are parts of the scale
@@ -322,18 +322,18 @@ class Radau5 {
   const StructuredSystem* structure_;  ///< null: not known
   std::unique_ptr<Stages> stages_;
   std::unique_ptr<Factors> factors_;
-  std::unique_ptr<Look> look_;                    ///< null until asked for
+  std::unique_ptr<Look> look_;                    ///< null until used
   std::unique_ptr<WholeStages> whole_;            ///< null: simplified iterations
   std::vector<double> y_, ydot_, y0_, ydot0_;     ///< at the step's end and start
   std::vector<double> earlier_y_, earlier_ydot_;  ///< at the start of the step before
   StageValues z_, trial_, sample_;
-  double start_ = 0;                   ///< of the run [s]
-  double t_ = 0;                       ///< where the step under way begins [s]
+  double start_ = 0;                   ///< start of the run [s]
+  double t_ = 0;                       ///< start of the step under way [s]
   double t0_ = 0, t1_ = 0, done_ = 0;  ///< the last step [s]
   double earlier_t_ = 0;               ///< start of the step before; t0_: there is none
-  double h_ = 0;                       ///< tried next [s]
+  double h_ = 0;                       ///< next trial [s]
   bool first_ = true, rejected_ = false;
-  bool changed_ = true;  ///< h_ is not that of the factors
+  bool changed_ = true;  ///< h_ is not the factors' step
   bool have_derivatives_ = false, derivatives_fresh_ = false, have_factors_ = false;
   std::string failure_;
   Counters counters_;

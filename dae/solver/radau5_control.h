@@ -14,7 +14,7 @@ namespace momenta::radau5 {
 
 class Prediction {
  public:
-  static constexpr int most_iterations = 7;  ///< of Newton's method
+  static constexpr int most_iterations = 7;  ///< Newton iterations
 
   /// h over the next step, by this step's error alone.
   static double divisor(double error, int iterations) {
@@ -22,7 +22,7 @@ class Prediction {
         std::min(safety, safety * (1 + 2 * most_iterations) / (iterations + 2 * most_iterations));
     return std::clamp(std::pow(std::max(error, 1e-20), 0.25) / caution, 1 / grow, 1 / shrink);
   }
-  /// The next step over h, after an accepted one; `first` of the run, or `rejected` before.
+  /// The next step over h, after an accepted one; `first`: of the run, `rejected`: before.
   double factor(double h, double error, double divisor, bool first, bool rejected) {
     if (!first) {
       const double predicted = before_ / h * std::pow(error * error / error_before_, 0.25) / safety;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::array<double, 3> error_weights{gamma0 * (-13 - 7 * root6) / 3,
                                               gamma0*(-13 + 7 * root6) / 3, gamma0 * -1.0 / 3};
-/// What moves is held at this part: about what it is of the whole where σ is small.
+/// Part at which errors of what moves are held: about their part of the whole where σ is small.
 constexpr double moving_part = 1.0 / 3;
 
 }  // namespace

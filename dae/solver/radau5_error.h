@@ -23,7 +23,6 @@
 
 namespace momenta::radau5 {
 
-/// Where a step starts.
 struct StepStart {
   double t;
   const double *y, *ydot;
@@ -31,27 +30,27 @@ struct StepStart {
 
 class LocalError {
  public:
-  /// `gauge` null: there is none.
+  /// `gauge` null: none.
   LocalError(const DaeSystem& system, GaugeSymmetry* gauge, const IntegrationOptions& options,
              double span);
 
-  /// For Newton's corrections of a step of length h from y; its weights stay until forget().
+  /// Norm for Newton's corrections of a step of length h from y; its weights stay until forget().
   const WeightedNorm& norm(const double* y, double h);
   void forget() { weighed_for_ = 0; }
-  /// What Newton's method leaves, over the tolerance of the estimate.
+  /// Fraction of the estimate's tolerance at which Newton stops.
   double fraction() const;
-  /// Whether corrections that do not shrink any more are rounding: of the motion they change no
-  /// more than a tenth of its tolerance (as bdf_step.h has it). What is left of them is along Φ_qᵀ,
-  /// as large as the rounding of q makes it.
+  /// Whether corrections that do not shrink are rounding: of the motion they change no more than a
+  /// tenth of its tolerance (as bdf_step.h has it). The rest of them is along Φ_qᵀ, as large as the
+  /// rounding of q makes it.
   bool rounding_is_left(const Stages& stages, const StepStart& start);
-  /// Of the stages z over the tolerance; `doubtful`: at the start of a run or after a rejection.
+  /// Error of the stages z over the tolerance; `doubtful`: at the start of a run or after a
+  /// rejection.
   double of(Stages& stages, const Factors& factors, const StepStart& start, double h,
             const StageValues& z, bool doubtful);
-  /// A step was accepted.
   void passed(double h) { share_.passed(h); }
 
  private:
-  /// Of the tolerance of the estimate.
+  /// Share of the estimate's tolerance.
   double share() const;
   double size(const StepStart& start);
 
@@ -60,7 +59,7 @@ class LocalError {
   LocalShare share_;
   double inner_;  ///< tolerance of the estimate
   WeightedNorm norm_;
-  double weighed_for_ = 0;  ///< length of a step
+  double weighed_for_ = 0;  ///< length of the step of the weights
   std::vector<double> error_;
 };
 

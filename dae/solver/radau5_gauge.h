@@ -17,8 +17,8 @@ class StagesInGauge {
         directions_(static_cast<std::size_t>(gauge.direction_entries())),
         constant_(static_cast<std::size_t>(gauge.impulse_count())) {}
 
-  /// Into the gauge in which σ of y is zero: y0 at t0 and z, the stages of a step of length h from
-  /// there.
+  /// Goes into the gauge in which σ of y is zero: y0 at t0 and z, the stages of a step of length h
+  /// from there.
   void shift(const double* y, double t0, double h, std::vector<double>& y0, StageValues& z) {
     const double* sigma = gauge_.impulses(y);
     for (std::size_t i = 0; i < constant_.size(); ++i) constant_[i] = -sigma[i];

@@ -1,6 +1,6 @@
 #pragma once
-// Steps of Radau IIA to a time inside the last one: what a sample is, of full order and on all
-// constraints. Matrices of their own, so that looking changes nothing.
+// Samples of Radau IIA: steps to a time inside the last one, of full order and on all constraints.
+// Matrices of their own, so that looking changes nothing.
 
 #include <momenta/dae/solver/radau5_whole_stages.h>
 
@@ -11,7 +11,7 @@ namespace momenta::radau5 {
 
 class Look {
  public:
-  /// `whole`: by WholeStages.
+  /// `whole`: steps by WholeStages.
   Look(DaeSystem& system, bool whole) : stages_(system), factors_(system.size(), system.pattern()) {
     if (whole) whole_ = std::make_unique<WholeStages>(system);
   }

@@ -34,7 +34,7 @@ struct Factors {
   std::unique_ptr<NewtonMatrix<std::complex<double>>> complex;
 };
 
-/// Of Newton's method, where no shorter step can be tried.
+/// Newton iterations where no shorter step can be tried.
 inline constexpr int patient_iterations = 40;
 
 enum class Outcome { converged, slow, diverged, evaluation_failed, not_finite };
@@ -56,7 +56,7 @@ class Stages {
   }
 
   long evaluations = 0, iterations = 0;
-  /// Of the last solve: the contraction, its last factor θ/(1 − θ), iterations.
+  /// Last solve: the contraction, its last factor θ/(1 − θ), iterations.
   double theta = 0, contraction = 1;
   int count = 0;
 
@@ -96,7 +96,7 @@ class Stages {
           (inverse_(i, 0) * z[0][k] + inverse_(i, 1) * z[1][k] + inverse_(i, 2) * z[2][k]) / h;
   }
 
-  /// x ← J(γ/h)⁻¹ (γ/h) ∂F/∂y' x: what an implicit Euler step of h/γ would leave of x.
+  /// x ← J(γ/h)⁻¹ (γ/h) ∂F/∂y' x: x after an implicit Euler step of h/γ.
   void filter(const Factors& f, double h, double* x);
 
  private:

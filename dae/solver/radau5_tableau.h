@@ -33,8 +33,8 @@ inline constexpr double gamma = 1 / gamma0, alpha = inverse_alpha / modulus,
                         beta = inverse_beta / modulus;
 
 /// T: the real eigenvector of A⁻¹, then real and (negative) imaginary part of a complex one, scaled
-/// to T_32 = 1, T_33 = 0. An eigenvector of A = integration is the values at c of a cubic x(θ) with
-/// x(0) = 0 whose derivative is μ x up to a multiple of the nodes' polynomial: found by solving.
+/// to T_32 = 1, T_33 = 0. An eigenvector of A = integration has the values at c of a cubic x(θ),
+/// x(0) = 0, whose derivative is μ x up to a multiple of the nodes' polynomial.
 inline Eigen::Matrix3d transformation() {
   const Eigen::Matrix3d inverse = coefficients().inverse();
   Eigen::Matrix3d t;

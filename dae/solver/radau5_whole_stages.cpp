@@ -91,8 +91,7 @@ Outcome WholeStages::solve(double t, double h, double rate_scale, const double* 
     }
     const double size = std::sqrt(squares / (3 * norm.count()));
     if (!std::isfinite(size)) return Outcome::not_finite;
-    // The first correction is measured by the second one: it may have been all in what the norm
-    // does not see.
+    // The second correction measures the first, which may lie outside the norm.
     if (count > 1 && (size <= fraction || size <= norm.rounding())) return Outcome::converged;
     if (count > 2 && size > last) return Outcome::diverged;
     last = size;

@@ -70,7 +70,7 @@ class Rattle {
   }
 
  private:
-  /// The first two lines once, p_½ in to.p; `change`: the largest of q.
+  /// Iterates the first two lines once, p_½ in to.p; `change`: the largest of q.
   bool iterate(double t, double h, const State& from, State& to, double& change) {
     here_->force(from.q.data(), u0_.data(), nullptr, g_.data());
     to.p = from.p + 0.5 * h * g_;
@@ -80,7 +80,7 @@ class Rattle {
     }
     u0_before_ = u0_, u1_before_ = u1_;
     here_->rates(to.p.data(), nullptr, u0_.data());
-    u1_ += u0_ - u0_before_;  // it follows p_½ too: λ's correction counts on both
+    u1_ += u0_ - u0_before_;  // u_1 follows p_½ too: λ's correction counts on both
     delta_ = 0.5 * h * u0_;
     parts_.move(from.q.data(), delta_.data(), middle_.data());
     delta_ = 0.5 * h * u1_;

@@ -7,13 +7,13 @@
 namespace momenta {
 namespace {
 
-/// Samples of δ, and by how much corrections at the floor scatter about their root mean square.
+/// Samples of δ, and the scatter of corrections at the floor about their root mean square.
 constexpr int samples = 3;
 constexpr double scatter = 4;
-/// A correction of so many tolerances passes. IDA's default would leave 0.33, but differences of
-/// order five have sixteen times the noise of a step, and order and step are chosen by those.
+/// Largest correction, in tolerances, that passes. IDA's default would leave 0.33, but differences
+/// of order five, which choose order and step, have sixteen times the noise of a step.
 constexpr double most = 0.1;
-/// As IDA has it.
+/// IDA's number.
 constexpr int most_corrections = 4;
 
 }  // namespace

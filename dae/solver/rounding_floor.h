@@ -1,5 +1,5 @@
 #pragma once
-// Newton's method of IDA, told how small its corrections can get.
+// Newton's method of IDA with a floor of rounding for its corrections.
 //
 // A correction is J⁻¹ F, and F comes with roundings: of y and y' as they are stored and of its own
 // operations. J⁻¹ may carry them far: with Φ(q) = 0 among the rows, an opening of ε |q| is answered
@@ -35,10 +35,10 @@ class RoundingFloor {
   RoundingFloor(const RoundingFloor&) = delete;
   RoundingFloor& operator=(const RoundingFloor&) = delete;
 
-  /// Before the first step; the solver and its matrix are those that IDA has.
+  /// To be called before the first step; the solver and its matrix are IDA's.
   void attach(void* ida, SUNLinearSolver solver, SUNMatrix matrix);
 
-  /// Where the last trial of a step did not converge because of it: the floor in tolerances; else
+  /// The floor in tolerances, where the last trial of a step did not converge because of it; else
   /// 0.
   double reached() const { return reached_; }
   void forget() { reached_ = 0; }

@@ -1,7 +1,6 @@
 #pragma once
-// What methods for equations of second order need to know of a DaeSystem beside its residual:
-// y = (q, v, λ), rows in the same order: q' = E(q) v, M v' + … + Φ_qᵀλ = 0, Φ(q, t) = 0. There may
-// be more coordinates than rates (quaternions).
+// A DaeSystem of second order: y = (q, v, λ), rows in the same order: q' = E(q) v, M v' + … + Φ_qᵀλ
+// = 0, Φ(q, t) = 0. There may be more coordinates than rates (quaternions).
 
 #include <momenta/dae/solver/system.h>
 
@@ -25,7 +24,7 @@ class SecondOrder {
   virtual int multipliers() const = 0;  ///< m
   /// E(q) v (nq) of v (nv).
   virtual void coordinate_rates(const double* q, const double* v, double* qdot) = 0;
-  /// q ∘ exp δ: where constant rates δ (nv) lead in a unit of time, to fourth order in δ (exact for
+  /// q ∘ exp δ: q after constant rates δ (nv) for a unit of time, to fourth order in δ (exact for
   /// joints with q' = v); quaternions of unit length.
   virtual void move(const double* q, const double* delta, double* moved) = 0;
 

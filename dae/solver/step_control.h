@@ -22,7 +22,7 @@ class StepControl {
  public:
   /// Factor for the step after an accepted one with this squared error.
   double accepted(double error_squared) {
-    // 1e-60 stands for no error at all: the bound `grow` then holds anyway.
+    // No error counts as 1e-60: the bound `grow` holds anyway.
     const double log_error = 0.5 * std::log(std::max(error_squared, 1e-60));
     double factor =
         Tableau::safety * std::exp(Tableau::beta * log_old_error_ - Tableau::exponent * log_error);

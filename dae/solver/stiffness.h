@@ -1,5 +1,5 @@
 #pragma once
-// Whether an explicit method's steps are held by its stability and not by its tolerance.
+// Stiffness: steps of an explicit method held by its stability and not by its tolerance.
 //
 // The last stage g_s and the end y_1 of a step belong to the same time, so
 //
@@ -32,14 +32,14 @@ consteval double stability_interval() {
   }
 }
 
-/// Counts steps at the stability limit as HW's codes do: 15 before six in a row that are not.
+/// Counts steps at the stability limit as HW's codes do: 15 before six in a row elsewhere.
 class Stiffness {
  public:
   explicit Stiffness(double interval) : limit_(0.9 * interval) {}
 
-  /// Whether this step is to be looked at: one in 32, all once one was at the limit.
+  /// Whether to look at this step: one in 32, all once one was at the limit.
   bool looks(long step) const { return std::isnan(from_) && (suspects_ > 0 || step % 32 == 0); }
-  /// h ρ of a step that began at t.
+  /// Takes h ρ of a step that began at t.
   void take(double h_rho, double t) {
     if (h_rho > limit_) {
       if (suspects_++ == 0) first_ = t;

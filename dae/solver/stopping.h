@@ -1,5 +1,5 @@
 #pragma once
-// Why a run stops before its end: limits on steps and time, and the one sentence that says so.
+// Limits on steps and time, and the one sentence on why a run stops before its end.
 
 #include <cstdio>
 #include <ctime>
@@ -24,7 +24,7 @@ inline std::string stop_sentence(const std::string& method, double t, const std:
   return method + " stopped at t = " + in_words(t) + " s: " + cause;
 }
 
-/// What the system said about its failing evaluation, or that it said nothing.
+/// The system's sentence on its failing evaluation, or that it failed.
 inline std::string evaluation_cause(const std::string& failure) {
   return failure.empty() ? "an evaluation of the equations failed" : failure;
 }
@@ -46,12 +46,11 @@ inline double thread_seconds() {
 #endif
 }
 
-/// CPU time of the calling thread since construction against a limit; looks at the clock once in so
-/// many calls as take a hundredth of a second, at the most 64: a clock read of 0.2-1 us is then
-/// little beside steps of the same length.
+/// CPU time of the calling thread since construction against a limit. Reads the clock about every
+/// hundredth of a second, after 64 calls at the latest: a read takes 0.2-1 us.
 class CpuLimit {
  public:
-  /// `spent`: of the limit, before.
+  /// `spent`: part of the limit used before.
   explicit CpuLimit(double seconds, double spent = 0)
       : limit_(seconds), start_(seconds > 0 ? thread_seconds() - spent : 0) {}
   double seconds() const { return limit_; }
@@ -66,18 +65,17 @@ class CpuLimit {
 
  private:
   double limit_, start_;
-  double last_ = 0;               ///< when it was looked at [s]
-  long calls_ = 0, between_ = 1;  ///< since then; until the next look
+  double last_ = 0;               ///< last look [s]
+  long calls_ = 0, between_ = 1;  ///< since the last look; until the next
 };
 
-/// A run without a limit of time against that of its steps: as soon as thirty thousand were so
-/// short that the limit would be reached before the end, it need not go on to find out.
+/// A run without a limit of time against that of its steps: once thirty thousand were so short that
+/// the limit would be reached before the end, it stops.
 class Pace {
  public:
-  /// `count`: of the steps before t0.
+  /// `count`: steps before t0.
   Pace(long count, double t0, double end, long limit)
       : at_(t0), end_(end), limit_(limit), next_(count + looked_at) {}
-  /// After `count` steps, at t.
   bool is_hopeless(long count, double t) {
     if (count < next_) return false;
     per_step_ = (t - at_) / static_cast<double>(looked_at);

@@ -1,5 +1,5 @@
 #pragma once
-// What a DaeSystem may know of its structure: a mixin.
+// Structure of a DaeSystem: a mixin.
 
 namespace momenta {
 

@@ -19,7 +19,7 @@
 
 namespace momenta::sundials {
 
-/// Thrown for a code that only a wrong call or want of memory can bring, never for a step that
+/// Throws for a code that only a wrong call or want of memory can bring, never for a step that
 /// fails.
 inline void check(int code, const char* call) {
   if (code < 0) throw std::runtime_error(std::string(call) + " returned " + std::to_string(code));
@@ -52,7 +52,7 @@ using Matrix = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, Release>;
 using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, Release>;
 using NonlinearSolver = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, Release>;
 
-/// A serial vector with its numbers at hand.
+/// A serial vector whose numbers can be reached.
 class Vector {
  public:
   Vector(int size, const Context& context) : vector_(require(N_VNew_Serial(size, context))) {
@@ -74,7 +74,7 @@ struct ReleaseIntegrator {
 };
 using Integrator = std::unique_ptr<void, ReleaseIntegrator>;
 
-/// An error handler that keeps silent: codes carry what is needed.
+/// Error handler that keeps silent: codes carry what is needed.
 inline void silent(int, const char*, const char*, char*, void*) {}
 
 }  // namespace momenta::sundials

@@ -1,6 +1,6 @@
 #pragma once
-// What an integrator sees of a form: an ODE y' = f(t, y), or a DAE F(t, y, y') = 0. Failures are
-// values: a call returns false and `failure()` then holds one sentence (which constraint, which
+// Interface of a form to integrators: an ODE y' = f(t, y), or a DAE F(t, y, y') = 0. Failures are
+// values: a call returns false, and `failure()` then holds one sentence (which constraint, which
 // time, which cause).
 
 #include <momenta/dae/solver/memory.h>
@@ -11,8 +11,8 @@
 
 namespace momenta {
 
-/// What a method with error control does near singular poses, in order of cost: `none`, nothing;
-/// `norm`, it measures errors by their effect on the motion; `position`, it also evaluates f at the
+/// Handling of singular poses by a method with error control, in order of cost: `none`; `norm`:
+/// errors are measured by their effect on the motion; `position`: f is also evaluated at the
 /// corrected position.
 enum class SingularityHandling { none, norm, position };
 
@@ -22,43 +22,42 @@ class LocalJacobian;
 class OdeSystem {
  public:
   virtual ~OdeSystem() = default;
-  virtual int size() const = 0;  ///< of y
+  virtual int size() const = 0;  ///< size of y
 
   /// y' at (t, y); both of size().
   virtual bool rhs(double t, const double* y, double* ydot) = 0;
 
-  /// Called once after every accepted step of a one-step method, before the next step: gauge reset,
-  /// position correction, quaternion normalisation. Sets `changed` when y was altered so that f(t,
-  /// y) changes: a gauge reset does; a position correction of the size of the local error does not,
-  /// and the last stage may then still serve as the first stage of the next step.
+  /// Called after every accepted step of a one-step method: gauge reset, position correction,
+  /// quaternion normalisation. Sets `changed` when f(t, y) changes: by a gauge reset, not by a
+  /// position correction of the size of the local error, after which the last stage may serve the
+  /// next step.
   virtual bool after_step(double /*t*/, double* /*y*/, bool& /*changed*/) { return true; }
-  /// Whether after_step() does anything.
   virtual bool has_after_step() const { return false; }
 
-  /// Tells the system that a new step starts at (t, y). The centre of σ, towards which faded rows
-  /// go, is taken here, so that within a step f is a pure function of (t, y).
+  /// Begins a step at (t, y): takes the centre of σ, towards which faded rows go, so that within
+  /// the step f is a pure function of (t, y).
   virtual void begin_step(double /*t*/, const double* /*y*/) {}
 
   /// f at the state that after_step() left, where after_step() computed it; false: it is still to
   /// be evaluated.
   virtual bool first_derivative(double* /*ydot*/) { return false; }
 
-  /// The singularity handling that the evaluations since begin_step() require. Where loop equations
-  /// become dependent, the rates of a stage slightly off the manifold are far off. A method with
-  /// error control repeats the step where the handling changes f.
+  /// The singularity handling that evaluations since begin_step() require. Where loop equations
+  /// become dependent, rates slightly off the manifold are far off. A method with error control
+  /// repeats the step where the handling changes f.
   virtual SingularityHandling wanted_handling() const { return SingularityHandling::none; }
   /// Sets the handling. Of the three, only SingularityHandling::position changes f.
   virtual void set_handling(SingularityHandling /*singularity handling*/) {}
-  /// Square of a norm of the local error at (t, y): root mean square over the unknowns, of the part
-  /// that changes the motion, so not of the gauge of σ. The weight of an unknown is atol · scale +
-  /// rtol · size. Not finite where it cannot be computed. Used while singularity handling is on.
+  /// Mean square of the local error at (t, y), of its part that changes the motion, not the gauge
+  /// of σ. Weight of an unknown: atol · scale + rtol · size. Not finite where it cannot be
+  /// computed. Used while singularity handling is on.
   virtual double motion_error_squared(double /*t*/, const double* /*y*/, const double* /*error*/,
                                       double /*rtol*/, double /*atol*/) {
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Evaluations between look_on(true) and look_on(false) are for an observer: no counter counts
-  /// them, and no later step depends on them. Pairs may be nested.
+  /// Evaluations between look_on(true) and look_on(false) are for an observer: they are not
+  /// counted, and no later step depends on them. Pairs may be nested.
   virtual void look_on(bool /*looking*/) {}
 
   /// Whether carry() lists everything on which later evaluations depend, so that a run can be saved
@@ -72,8 +71,8 @@ class OdeSystem {
   virtual double scale(int /*i*/) const { return 1.0; }
 
   /// The matrix of equations F(t, (y, x), f) = 0 that f and further unknowns x solve, in place of
-  /// ∂f/∂y where that is large and full; null: there is none. evaluate() takes the y and f of the
-  /// last rhs().
+  /// ∂f/∂y where that is large and full; null: none. evaluate() takes the y and f of the last
+  /// rhs().
   virtual LocalJacobian* local() { return nullptr; }
 
   /// The time in which an unknown of its typical size typically changes by it [s].
@@ -87,7 +86,7 @@ class OdeSystem {
   const std::string& failure() const { return failure_; }
 
  protected:
-  /// Keeps the sentence; false.
+  /// Keeps the sentence and returns false.
   bool fail(std::string sentence) {
     failure_ = std::move(sentence);
     return false;
@@ -100,7 +99,6 @@ class OdeSystem {
 /// While this object lives, evaluations of the system are for an observer: look_on().
 class Looking {
  public:
-  /// Calls look_on(true).
   explicit Looking(OdeSystem& system) : system_(system) { system_.look_on(true); }
   ~Looking() { system_.look_on(false); }
   Looking(const Looking&) = delete;
@@ -127,14 +125,14 @@ class LocalJacobian {
   /// The pattern of the last evaluation. version() changes when the pattern changes.
   virtual const JacobianPattern& pattern() const = 0;
   virtual const std::vector<double>& values() const = 0;  ///< in the order of pattern()
-  virtual int version() const = 0;                        ///< of the pattern, ascending
+  virtual int version() const = 0;                        ///< version of the pattern, ascending
 };
 
 /// F(t, y, y') = 0. One object serves one thread.
 class DaeSystem {
  public:
   virtual ~DaeSystem() = default;
-  virtual int size() const = 0;  ///< of y and of F
+  virtual int size() const = 0;  ///< size of y and of F
 
   /// r = F(t, y, y').
   virtual bool residual(double t, const double* y, const double* ydot, double* r) = 0;
@@ -159,11 +157,11 @@ class DaeSystem {
   /// (multipliers).
   virtual double scale(int i) const = 0;
 
-  /// The weight of y_i in the norms of methods that know the index: error times h^power over atol ·
-  /// scale + rtol |y_i|. A variable whose error is one power of the step worse, such as the
-  /// velocities of an index-3 form, has power 1; power −1 keeps y_i out of the norm (multipliers).
+  /// The weight of y_i in norms of methods that know the index: error times h^power over atol ·
+  /// scale + rtol |y_i|. A variable one power of the step worse, such as velocities of index-3
+  /// forms, has power 1; power −1 keeps y_i out (multipliers).
   struct Weight {
-    int power;     ///< of h
+    int power;     ///< power of h
     double scale;  ///< times atol
   };
   /// The weight of y_i.
@@ -173,20 +171,18 @@ class DaeSystem {
   /// filtered one (filtered_error.h).
   virtual double unfiltered_part(int /*i*/) const { return 0; }
 
-  /// The longest span of a run [s] of which first steps, and the least steps near t = 0, are parts:
-  /// a farther end is no scale of the motion.
+  /// As OdeSystem::horizon().
   virtual double horizon() const { return 1e12; }
 
-  /// Whether y, or a state of ode_restart(), is near a pose where loop equations lose rank; either
-  /// begins with the coordinates. There the Newton matrix of a method may be singular if its step
-  /// spans the pose.
+  /// Whether y, or a state of ode_restart(), which both begin with the coordinates, is near a pose
+  /// where loop equations lose rank: the Newton matrix of a step across it may be singular.
   virtual bool near_singular(double /*t*/, const double* /*y*/) { return false; }
   /// The ODE that carries the motion past a singular pose, with singularity handling, and its
-  /// `state` (of size ode_restart_size()) at (t, y); null: there is none.
+  /// `state` (of size ode_restart_size()) at (t, y); null: none.
   virtual OdeSystem* ode_restart(double /*t*/, const double* /*y*/, double* /*state*/) {
     return nullptr;
   }
-  /// Size of the state of ode_restart(); 0: there is none.
+  /// Size of the state of ode_restart(); 0: none.
   virtual int ode_restart_size() const { return 0; }
   /// Computes y and y' from a state of that ODE. On entry y holds the last known multipliers.
   virtual bool rejoin(double /*t*/, const double* /*state*/, double* /*y*/, double* /*ydot*/) {
@@ -197,7 +193,7 @@ class DaeSystem {
   const std::string& failure() const { return failure_; }
 
  protected:
-  /// Keeps the sentence; false.
+  /// Keeps the sentence and returns false.
   bool fail(std::string sentence) {
     failure_ = std::move(sentence);
     return false;

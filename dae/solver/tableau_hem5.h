@@ -30,7 +30,7 @@ namespace momenta {
 struct TableauHem5 {
   static constexpr int stages = 6;
   static constexpr double root19 = 4.35889894354067355223698198386;
-  /// By stage; that of the first stands for nothing.
+  /// By stage; the first is not used.
   static constexpr std::array<double, stages> c_bar{0, 0.3, 0.45, 0.8, (58 + 4 * root19) / 85, 1};
   static constexpr std::array<std::array<double, stages>, stages> a_bar{{
       {0, 0, 0, 0, 0, 0},
@@ -43,8 +43,8 @@ struct TableauHem5 {
       explicit_rk::TableauDp5::a[6],
   }};
 
-  /// Stages before stage i whose values foresee f there: k_i ≈ Σ_j ℓ_j(c_i) k_j by the polynomial
-  /// through them. The second, off by O(h²), serves the third alone.
+  /// Stages before stage i that foresee f there: k_i ≈ Σ_j ℓ_j(c_i) k_j by the polynomial through
+  /// them. The second, off by O(h²), serves the third alone.
   static constexpr std::array<std::array<bool, stages>, stages> foresees{{
       {},
       {true},
@@ -53,7 +53,7 @@ struct TableauHem5 {
       {true, false, true, true},
       {true, false, true, true, true},
   }};
-  /// ℓ_j(c_i), zero where stage j is none of those.
+  /// ℓ_j(c_i), zero for other stages j.
   static constexpr std::array<std::array<double, stages>, stages> foreseen = [] {
     std::array<std::array<double, stages>, stages> all{};
     const auto& c = explicit_rk::TableauDp5::c;

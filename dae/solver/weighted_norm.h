@@ -10,7 +10,7 @@
 
 namespace momenta {
 
-/// Weights of the norms: h^power / (atol scale + rtol |y|), zero for what stays out.
+/// Weights of the norms: h^power / (atol scale + rtol |y|), or zero.
 class WeightedNorm {
  public:
   WeightedNorm(const DaeSystem& system, double rtol, double atol)
@@ -23,7 +23,7 @@ class WeightedNorm {
       kept_ += kept;
     }
   }
-  /// At a share of the tolerance.
+  /// Sets weights at a share of the tolerance.
   void set(const double* y, double h, double share = 1) {
     share_ = share;
     for (std::size_t i = 0; i < weight_.size(); ++i)
@@ -40,7 +40,7 @@ class WeightedNorm {
   }
   double of(const double* x) const { return std::sqrt(squares(x) / count()); }
   double count() const { return std::max(kept_, 1); }
-  /// What roundings of y may come to.
+  /// Norm that roundings of y may reach.
   double rounding() const {
     return 100 * std::numeric_limits<double>::epsilon() / (share_ * rtol_);
   }

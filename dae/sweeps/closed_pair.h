@@ -143,8 +143,8 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
     });
     front.subtract_products(pair.Ga, ga, pair.Gb, gb, beside);
   } else {
-    // What was there is read, changed and written once: a whole register read after a part of it
-    // was written waits for the memory.
+    // Blocks are read, changed and written once: a whole register read after a part of it was
+    // written waits for the memory.
     Here Ga, Gb, ga, gb;
     each<Here::parts>([&](auto k) MOMENTA_INLINED {
       const auto x = Here::template without<A, k>(front.W[A].v[k]),

@@ -1,5 +1,5 @@
 #pragma once
-// Couplers in the sweeps: the joints a row ties, what the right-hand side asks of it, and its leak.
+// Couplers in the sweeps: the joints a row ties, its right-hand side, and its leak.
 
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/sweeps/slots/loop_plan.h>

@@ -1,7 +1,7 @@
 #pragma once
-// What a front carries of the loops still open at it, and how a loop closes. With P* = M*Ω + C σ +
-// D and the loops' residual r = CᵀΩ − W σ + d, closing a row k, pivot w = W_kk, takes σ_k out by
-// r_k = 0:
+// A front's blocks of the loops still open at it, and how a loop closes. With P* = M*Ω + C σ + D
+// and the loops' residual r = CᵀΩ − W σ + d, closing a row k, pivot w = W_kk, takes σ_k out by r_k
+// = 0:
 //
 //   σ_k = f(w) (c_kᵀΩ + d_k − W_k· σ)
 //   M* += c_k f c_kᵀ,  D += c_k f d_k,  C −= c_k f W_k·,  d −= d_k f W_k·,  W −= W_·k f W_k·
@@ -27,7 +27,7 @@ struct Front {
   Here C[Columns];  ///< wrench of a unit impulse, force before couple
   Here d;
   Here scale;
-  Here W[Rows];  ///< symmetric: of slots apart only the upper triangle is kept
+  Here W[Rows];  ///< symmetric; where slots are apart only the upper triangle
 
   MOMENTA_INLINE S w(int i, int j) const { return Here::apart && j < i ? W[j][i] : W[i][j]; }
   template <int i, int j>
@@ -38,8 +38,8 @@ struct Front {
       return W[i].template at<j>();
   }
 
-  /// Zeroes what opens here: at a leaf everything, elsewhere the groups in `fresh`; of those in
-  /// `born` only C and d, as a revolute joint's elimination will write W and scale.
+  /// Zeroes the slots that open here: at a leaf all, elsewhere the groups in `fresh`; of `born`
+  /// only C and d, as a revolute joint's elimination will write W and scale.
   MOMENTA_INLINE void begin(bool leaf, SlotGroups fresh, SlotGroups born = 0) {
     if constexpr (!Here::apart) {
       if (leaf) *this = {};
@@ -61,8 +61,8 @@ struct Front {
     });
     add_at_ground(b, open, 0, open);
   }
-  /// The ground does not move: C no longer matters. Of `fresh` groups nothing was there, of `all`
-  /// are those that stay.
+  /// Adds b without C, as the ground does not move. `fresh`: groups not there before; `all`: groups
+  /// that stay.
   MOMENTA_INLINE void add_at_ground(const Front& b, SlotGroups open, SlotGroups fresh,
                                     SlotGroups all) {
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
@@ -79,8 +79,8 @@ struct Front {
           });
         });
   }
-  /// A joint's coordinate goes: W += c (M_j⁻¹ c)ᵀ, d += y c, y = M_j⁻¹ e; leaves g = M_j⁻¹ c. The
-  /// scale is the caller's. Of `born` groups W is written.
+  /// Eliminates a joint's coordinate: W += c (M_j⁻¹ c)ᵀ, d += y c, y = M_j⁻¹ e, g = M_j⁻¹ c. The
+  /// caller updates the scale; W of `born` groups is overwritten.
   MOMENTA_INLINE void eliminate(const Here& c, const S& inverse, const S& y, SlotGroups open,
                                 SlotGroups born, Here& g) {
     Here local, own;
@@ -121,9 +121,8 @@ struct Front {
   }
 
  private:
-  /// act(row, part of the row) for the entries of W that are kept, of open slots. Without a lambda
-  /// in a lambda: g++ resolves the address of what is captured so deep when it is too late for
-  /// registers.
+  /// act(row, part of the row) for the entries of W that are kept, of open slots. No lambda in a
+  /// lambda: g++ resolves the address of captures that deep too late for registers.
   template <class Act>
   MOMENTA_INLINE static void each_entry(SlotGroups open, Act&& act) {
     if constexpr (Here::apart)
@@ -145,7 +144,7 @@ struct Front {
   }
 };
 
-/// Rows of the loop at `slot`, about to close, give way: r −= compliance σ.
+/// Softens the rows of the loop at `slot`, about to close: r −= compliance σ.
 template <class S, int Rows, int Columns>
 void soften(Front<S, Rows, Columns>& front, int slot, int rows, const S* compliance) {
   for (int i = 0; i < rows; ++i) front.W[slot + i].add(slot + i, compliance[i]);
@@ -163,7 +162,7 @@ struct ClosedRow {
   /// σ_k for the motion `omega` of the closing body.
   template <class Motion>
   MOMENTA_INLINE S impulse(const Motion& omega, const Slots<S, Rows>& sigma) const {
-    // What waits for the σ just found comes last.
+    // The term that waits for the σ just found comes last.
     S s = d;
     for (int i = 0; i < Columns; ++i) s = s + c[i] * omega[i];
     return minus_dot(s, G, sigma, ~SlotGroups{});
@@ -218,13 +217,12 @@ MOMENTA_INLINE void close_row(int slot, Front<S, Rows, Columns>& front, const S&
   weight(c, row.c, row.d);
 }
 
-/// What is open beside a loop that closes. Alone, only its own rows that are left are worked on,
-/// and nothing after the last; at the ground, which does not move, neither C nor what a row weighs.
+/// Loops open beside one that closes. With none, only its own rows that are left are worked on, and
+/// nothing after the last; at the ground, which does not move, neither C nor `weight`.
 enum class Beside { others, none, none_at_ground };
 
-/// close_row() of a loop of `rows` rows at `first` beside which no other is open; `left`: ones in
-/// the slots of those still to be closed, `slot` already without. Slots of rows that are closed are
-/// not read again, and hold anything.
+/// close_row() of a loop of `rows` rows at `first` with no other open; `left`: ones in the slots
+/// still to be closed after `slot`. Slots of closed rows are not read again, and hold anything.
 template <bool Moves, class S, int Rows, int Columns, class Weight>
 MOMENTA_INLINE void close_row_alone(int slot, int first, int rows, const bool* closed, bool last,
                                     const Slots<S, Rows>& left, Front<S, Rows, Columns>& front,
@@ -277,7 +275,7 @@ inline bool has_faded(double w, double tau) {
   return !(w > 10 * tau);
 }
 
-/// What tells the size of a pivot to the choice of the next one: of a pack, all its states.
+/// Size of a pivot for the choice of the next one: of a pack, over all its states.
 template <int W, int L>
 double size_of(const Pack<W, L>& x) {
   const Pack<W, L> zero(0.0), positive = where_greater(x, zero, x, zero);
@@ -287,22 +285,22 @@ double size_of(const Pack<W, L>& x) {
     return sum_of(positive).v;
 }
 
-/// Whether an S has derivatives along directions, of which each may have something of its own in d.
+/// Whether S has derivatives along directions, each of which may have its own share in d.
 template <class S>
 constexpr bool has_directions = false;
 template <class S, int N>
 constexpr bool has_directions<Dual<S, N>> = true;
 
-/// Of a single state the pivots are kept: its failures and faded rows are told.
+/// Whether pivots are kept: for a single state, to report failures and faded rows.
 template <class S>
 constexpr bool keeps_pivots = true;
 template <int W, int L>
 constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
 
-/// Closes the rows of one loop: `points` rows at `slot` that share a unit and have that scale at
-/// least, then `others`. Records them in closing order. Of a pack all states are closed in one
-/// order: false where that takes, of some state, a pivot below a hundredth of the largest that is
-/// left, or a weak one, before which each should go in its own order.
+/// Closes the rows of one loop: `points` rows at `slot` that share a unit and a scale of at least
+/// `least_scale`, then `others`. Records them in closing order. A pack closes all states in one
+/// order: false where that takes a pivot of some state that is weak, or below a hundredth of the
+/// largest left, so that each should go in its own order.
 template <Beside beside = Beside::others, class S, int Rows, int Columns, class Weight>
 bool close_loop(Front<S, Rows, Columns>& front, int slot, int points, int others,
                 const S& least_scale, double fade, ClosedRow<S, Rows, Columns>* records,

@@ -6,7 +6,7 @@
 
 namespace momenta {
 
-/// What closing a row adds to the front: c f cᵀ and c f d.
+/// Adds what a closed row leaves, c f cᵀ and c f d.
 template <class S>
 struct PlanarWeight {
   PlanarArticulated<S>& a;
@@ -75,8 +75,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, doub
              &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.articulated});
 }
 
-/// The rows of couplers on joint k of body k; returns the joint's momentum or force without what
-/// they are centred on.
+/// Enters couplers' rows on joint k; returns the joint's momentum or force without their centre.
 template <class S, int Rows, bool Momentum>
 template <class In>
 S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
@@ -111,8 +110,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarArticulated<S> a{};
-  // Of one state in registers: all that takes its address takes a copy. Of a pack in memory, as
-  // what is open differs from body to body.
+  // In registers for one state: what takes the address takes a copy. In memory for a pack, as what
+  // is open differs from body to body.
   std::conditional_t<Column::apart, Blocks&, Blocks> o = front_;
   Blocks& ground = ground_;
   if constexpr (!Column::apart) ground = {};
@@ -295,7 +294,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
     o.scale += c * y.g;
     for (int i = 0; i < 3; ++i) o.C[i] -= c * x.h[i];
   }
-  // Ω_t, or what the body's acceleration has beside its parent's and E u̇.
+  // Ω_t, or the body's acceleration without its parent's and E u̇.
   if constexpr (!Momentum)
     if (b.parent >= 0) {
       const S omega = revolutes_[static_cast<std::size_t>(b.parent)].omega;

@@ -72,7 +72,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
     }
     if (!l.revolute) {
       PlanarMotion<S> here{vx, vy, omega};
-      const Column carried = sigma;  // whose address is taken
+      const Column carried = sigma;  // a copy, as its address is taken
       general_outward(k, Momentum && right.rates, u, rate, here, carried);
       vx = here.vx;
       vy = here.vy;
@@ -145,8 +145,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::general_outward(std::size_t k, bool 
   m = {V.v[0], V.v[1], V.w};
 }
 
-/// The body's own share of T: its weight, and at each end of a loop N − κ w. Of a tie each end has
-/// its own, N = u × F.
+/// Sets the body's own share of T: its weight, and at each end of a loop N − κ w; each end of a tie
+/// has its own, N = u × F.
 template <class S, int Rows, bool Momentum>
 template <class Out>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::own_rates(
@@ -183,7 +183,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::own_rates(
   w.fn = T.fn;
 }
 
-/// The same of any other loop, at the end that is met last, for both: the other body's T waits in
+/// N − κ w of a loop that is no tie, for both ends at the one met last: the other body's T waits in
 /// its record.
 template <class S, int Rows, bool Momentum>
 template <class Out>
@@ -200,7 +200,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_other_rates(
     return Planar::Motion<S>{{{w.vx, w.vy}}, w.omega};
   };
   const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
-  Wrench w, N;  // of the impulses on A about x_A, and its rate
+  Wrench w, N;  // impulses on A about x_A, and their rate
   if (end.turns) {
     const S x = S(impulse[l.row]), y = S(impulse[l.row + 1]);
     w = {x * s.Fx - y * s.Fy, x * s.Fy + y * s.Fx, zero};
@@ -287,7 +287,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::force_of_rows(
   const S zero(0.0);
   w = N = {zero, zero, zero};
   if (l.is_coupler()) return;
-  S turning_a = of_a.w, turning_b = of_b.w;  // of the axes
+  S turning_a = of_a.w, turning_b = of_b.w;  // turning of the axes
   if (l.motion >= 0) {
     turning_a = turning_a + motion(l).turning_a;
     turning_b = turning_b + motion(l).turning_b;

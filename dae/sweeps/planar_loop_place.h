@@ -1,12 +1,11 @@
 #pragma once
-// Where bodies and loops of a plane stand at one state. Part of planar_loop_sweeps.h.
+// Places of bodies and loops in a plane at one state. Part of planar_loop_sweeps.h.
 
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 
 namespace momenta {
 
-/// Where the ends of loops are, beyond what their own bodies know; in the acceleration form the
-/// velocities of all bodies.
+/// Places the ends of loops; in the acceleration form also finds the velocities of all bodies.
 template <class S, int Rows, bool Momentum>
 template <class In>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const RightSide<S>& right) {
@@ -70,7 +69,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
   }
 }
 
-/// The same where all joints are revolute and no tie asks for D.
+/// place_bodies() where all joints are revolute and no tie needs D.
 template <class S, int Rows, bool Momentum>
 template <class In>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_revolutes([[maybe_unused]] const In& x,
@@ -133,7 +132,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
   }
 }
 
-/// Pairs of rows along axes of B.
+/// Places pairs of rows along axes of B.
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(const RightSide<S>& right) {
   const bool asked = biased(right);
@@ -171,7 +170,7 @@ Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::in_ground(int body, const Vec2<do
   return turned(static_cast<std::size_t>(body), v);
 }
 
-/// Loops that need both their bodies' places at once.
+/// Places loops that need both their bodies' places at once.
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops(const RightSide<S>& right) {
   const auto origin = [&](int body) {

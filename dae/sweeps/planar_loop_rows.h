@@ -1,6 +1,6 @@
 #pragma once
-// Rows of loops in a plane: what their right-hand sides hold, and how their ends enter a front.
-// Part of planar_loop_sweeps.h.
+// Rows of loops in a plane: their right-hand sides, and how their ends enter a front. Part of
+// planar_loop_sweeps.h.
 
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 
@@ -40,7 +40,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   const MovingPoint& prescribed = moving_point(l);
   const Vec2<S> gap = gap_of(l, s);
   S aw(0.0), bw(0.0);
-  Vec2<S> u{}, accelerated{};  // of x_A − x_B, the bodies' own accelerations left out
+  Vec2<S> u{}, accelerated{};  // rates of x_A − x_B, the bodies' own accelerations left out
   if (l.a >= 0) {
     const Revolute& A = revolutes_[static_cast<std::size_t>(l.a)];
     aw = A.omega;
@@ -75,7 +75,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   return bias + (2 * right.alpha) * rate + (right.beta * right.beta) * phi;
 }
 
-/// Whether an end brings something for d: of a tie both ends have their share of J̇ V.
+/// Whether an end adds to d: both ends of a tie have their share of J̇ V.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE bool LoopSweeps<Planar, S, Rows, Momentum>::asks(const End& end,
                                                                 const RightSide<S>& right) const {
@@ -84,8 +84,8 @@ MOMENTA_INLINE bool LoopSweeps<Planar, S, Rows, Momentum>::asks(const End& end,
   return biased(right);
 }
 
-/// What one end on body k brings to d of both rows of a tie: βΦ; in the acceleration form its own
-/// J̇ V = ∓ω² a, and of the feedback 2α times its point's velocity.
+/// Share of one end on body k in d of both rows of a tie: βΦ; in the acceleration form its own J̇ V
+/// = ∓ω² a, and of the feedback 2α times its point's velocity.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(
     std::size_t k, const End& end, const Vec2<S>& arm, const RightSide<S>& right) const {
@@ -164,7 +164,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
   }
 }
 
-/// The loop ends on body k.
+/// Enters the loop ends on body k.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
                                                                  const LoopPlan::Range& range,
@@ -185,7 +185,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
   }
 }
 
-/// Without a call: whatever stays in registers would have to leave them.
+/// Inlined: a call would make whatever stays in registers leave them.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_t k, std::size_t i,
                                                                       const RightSide<S>& right,

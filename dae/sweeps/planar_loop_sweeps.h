@@ -37,7 +37,7 @@
 
 namespace momenta {
 
-/// What bodies have for the way out and the last sweep.
+/// Records of bodies for the way out and the last sweep.
 template <class S, int Rows, bool Momentum>
 struct LoopedRevolute {
   Slots<S, Rows> Cx, Cy, g;
@@ -52,7 +52,7 @@ struct LoopedRevolute<S, Rows, false> {
   Slots<S, Rows> g;
   S rx, ry, hx, hy, inverse;
   S fn;             ///< M_j⁻¹ e
-  S vx, vy, omega;  ///< of the state
+  S vx, vy, omega;  ///< Ω of the state
 };
 template <class S, int Rows>
 struct LoopedJoint {
@@ -72,7 +72,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Row = ClosedRow<S, Rows, 3>;
   using Revolute = LoopedRevolute<S, Rows, Momentum>;
   using Pair = ClosedPair<S, Rows, 3>;
-  /// Wider fronts close pairs of rows as they do all others.
+  /// Wider fronts close pairs row by row.
   static constexpr bool pairs_in_registers = Rows <= 8;
 
  public:
@@ -84,18 +84,17 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   /// u̇, λ from u and joint forces `tau` (nv). Springs and wrenches at points of bodies as
   /// right.body_forces says. False when a joint's inertia is not positive: singular_joint().
   /// O(bodies + m).
-  /// @pre Without right.body_forces for states side by side.
+  /// @pre No right.body_forces for states side by side.
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
                   Out u, Out sigma, Out rate);
 
-  /// What an evaluation goes through in memory.
+  /// Memory that an evaluation goes through [bytes].
   static std::size_t bytes(const PlanarTree& tree, const LoopModel<Planar>& loops) {
     return tree.links.size() * (sizeof(Revolute) + 3 * sizeof(S)) +
            loops.loops.size() * (sizeof(Place) + sizeof(Pair));
   }
-  /// Of an S with directions: what d of the second row has besides (m), in all solutions from now
-  /// on; null: nothing.
+  /// Sets what solutions add to d of the second row (m), where S has directions; null: nothing.
   void add_to_rows(const S* besides) { besides_ = besides; }
   using Base::singular_joint;
   static bool weak_looped_branch() { return false; }  ///< no branch is folded in a plane
@@ -107,10 +106,10 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Loop = LoopModel<Planar>::Loop;
   using Motion = LoopModel<Planar>::Motion;
 
-  /// An end of a loop, by body: what all sweeps take of it, in one place.
+  /// An end of a loop as all sweeps need it.
   struct End {
     Vec2<double> at;  ///< its point, body axes
-    Vec2<double> D;   ///< of a tie's end that begins its D: what an end on the ground has of it
+    Vec2<double> D;   ///< for the end that begins a tie's D: the part of an end on the ground
     double sign = 1;  ///< −1 on body B
     int loop = 0, row = 0, slot = 0;
     bool pair = false, tie = false;
@@ -129,17 +128,17 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     int loop, row, slot;
     bool pair;
   };
-  /// Where a loop that is no tie stands, ground axes.
+  /// Place of a loop that is no tie, ground axes.
   struct Place {
     S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B
-    S Fx, Fy;          ///< of a pair: first axis; the second stands across it
-    S dx, dy;          ///< of a pair: d, where the right-hand side asks for something
+    S Fx, Fy;          ///< pair: first axis; the second stands across it
+    S dx, dy;          ///< pair: d, where the right-hand side asks for something
   };
   /// A row's unit impulse on body A: force at x_A, couple; of an axis row a_i · b_j too.
   struct RowPlace {
     S Fx, Fy, c, turn;
   };
-  /// Of a loop with drives, ground axes: velocity and acceleration of x_B on B.
+  /// Velocity and acceleration of x_B on B in a loop with drives, ground axes.
   struct MovingPoint {
     Vec2<S> v, a;
   };
@@ -155,7 +154,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   MOMENTA_INLINE void place_ends(std::size_t k, bool gap, const S& x, const S& y);
   void place_turning(const RightSide<S>& right);
   __attribute__((noinline)) void place_other_loops(const RightSide<S>& right);
-  /// Whether d of rows that are no ties' has something in it.
+  /// Whether d of rows other than ties' may be nonzero.
   bool biased(const RightSide<S>& right) const {
     return !Momentum || right.positions != 0 || (right.drives && !moving_.empty());
   }
@@ -247,7 +246,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                                                Wrench& N) const;
 
   LoopsInTime<Planar> in_time_;
-  const LoopModel<Planar>* loops_;  ///< points and axes in the frames of the links, at the time
+  const LoopModel<Planar>* loops_;  ///< in the frames of the links, at the current time
   const LoopPlan* plan_;
   OpenSlots open_slots_;
   std::vector<Revolute> revolutes_;
@@ -256,11 +255,11 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   std::vector<End> ends_;            ///< as in the plan
   std::vector<Turning> turning_;     ///< loops that turn with B
   std::vector<Closing> closings_;    ///< as in the plan
-  std::vector<Vec2<S>> arms_;        ///< of ties, by end: x − O of its body, ground axes
-  std::vector<Vec2<S>> gaps_;        ///< of ties, by loop: D, where equations ask for it
+  std::vector<Vec2<S>> arms_;        ///< by end of a tie: x − O of its body, ground axes
+  std::vector<Vec2<S>> gaps_;        ///< by loop, ties: D, where equations ask for it
   std::vector<int> others_;          ///< loops that are neither ties nor turn with B alone
   bool tied_ = true;                 ///< all loops are ties
-  bool keeps_motions_ = false;       ///< somebody asks for bodies' Ω later
+  bool keeps_motions_ = false;       ///< bodies' Ω are needed later
   std::vector<Place> places_;        ///< by loop
   std::vector<RowPlace> row_at_;     ///< by row of Φ; not of pairs
   std::vector<MovingPoint> moving_;  ///< by motion
@@ -281,7 +280,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   Blocks front_, ground_;
   std::vector<Row> rows_;          ///< by row of Φ, in closing order within a loop
   std::vector<Pair> pairs_;        ///< by loop
-  const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
+  const S* compliance_ = nullptr;  ///< right.compliance of the call under way
   const S* besides_ = nullptr;
   std::optional<PlanarBodyForces<S>> forces_;
 };

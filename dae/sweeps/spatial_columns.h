@@ -67,7 +67,7 @@ MOMENTA_INLINE void columns_to_parent(const Mat3<S>& R, const Vec3<S>& r, typena
   }
 }
 
-/// What closing a row adds: c f cᵀ to M*, c f d to D.
+/// Adds what a closed row leaves: c f cᵀ to M*, c f d to D.
 template <class S, class Articulated>
 struct SpatialWeight {
   Articulated& a;

@@ -62,7 +62,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
       y.given.v -=
           Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
     }
-  if (!Momentum || b.nv == 0) {  // D' += M'c, d' += C'ᵀ c of a motion that is given
+  if (!Momentum || b.nv == 0) {  // D' += M'c, d' += C'ᵀ c of a given motion
     const Force P = Spatial::momentum(blocks(m.M), y.given);
     add_remainder(m, P);
     if (open)

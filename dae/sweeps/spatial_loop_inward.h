@@ -6,7 +6,7 @@
 
 namespace momenta {
 
-/// Ends of loops on body k.
+/// Enters ends of loops on body k.
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const LoopPlan::Range& range,
                                                        const RightSide<S>& right, Carried& a) {
@@ -53,7 +53,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const Loop
   if (end.first) enter_right_side(loop, right, a.blocks.d);
 }
 
-/// d of a loop's rows: positions, what is prescribed, velocity products.
+/// d of a loop's rows: positions, prescribed motion, velocity products.
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter_right_side(std::size_t loop,
                                                                   const RightSide<S>& right,
@@ -145,8 +145,8 @@ template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
 bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const RightSide<S>& right) {
   const auto* links = tree_->links.data();
-  // Of packs a front is thousands of bytes: what leaves do not begin anew is not read, and at the
-  // ground C is to stay zero, whatever came before.
+  // A pack's front is thousands of bytes, and is not cleared: what leaves do not begin anew is not
+  // read. At the ground C must stay zero.
   Carried &a = front_, &ground = ground_;
   if constexpr (!of_looped_branches) {
     ground.articulated = {};

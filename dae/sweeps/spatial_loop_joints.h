@@ -47,7 +47,6 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
     }
   const S cosine = angles_.cosine(k), sine = angles_.sine(k);
   const auto& edge = body(k).edge;
-  // The loops.
   const SlotGroups open = open_slots_.fronts[k].open;
   if (open) {
     o.eliminate(o.C[5], inverse, w.y0, open, 0, w.g);
@@ -195,9 +194,9 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k,
   return true;
 }
 
-/// What joints without one axis have in common inward: the record of body k with its open columns,
-/// its own momenta (forces) `own` and, of the tree alone, M' and D'. At the ground gravity becomes
-/// a given acceleration.
+/// Common inward part of joints without one axis: the record of body k with its open columns, its
+/// own momenta (forces) `own` and, of the tree alone, M' and D'. At the ground gravity becomes a
+/// given acceleration.
 template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
 MOMENTA_INLINE bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::tree_inward(

@@ -1,6 +1,6 @@
 #pragma once
-// What comes before the sweeps in space: joints, bodies and loops in their places and, in
-// acceleration form, moving. Part of spatial_loop_sweeps.h.
+// Before the sweeps in space: places of joints, bodies and loops and, in acceleration form, their
+// motion. Part of spatial_loop_sweeps.h.
 
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
@@ -85,7 +85,7 @@ MOMENTA_INLINE void pose_on_axis(const Constants& k, const S& c, const S& s, con
   }
 }
 
-/// Poses of the bodies on the ways of loops, in the axes of what closes them.
+/// Poses of the bodies on the ways of loops, in the axes of the bodies that close them.
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pose_bodies() {
   Spatial::Pose<S> ground;

@@ -57,7 +57,7 @@ class SpatialLoopSweeps {
  public:
   static constexpr bool of_momenta = Momentum;
 
-  /// `looped_branches`: those to take side by side; null: none.
+  /// `looped_branches`: to take side by side; null: none.
   SpatialLoopSweeps(const Tree& tree, const Loops& loops, const LoopPlan& plan,
                     const LoopedBranchGroups* looped_branches = nullptr);
 
@@ -68,7 +68,7 @@ class SpatialLoopSweeps {
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
                   Out u, Out impulse, Out rate);
 
-  /// What an evaluation goes through in memory.
+  /// Memory that an evaluation goes through [bytes].
   static std::size_t bytes(const Tree& tree, const Loops& loops) {
     return tree.links.size() * (sizeof(RevoluteRecord) + sizeof(LoopBody<S>) + sizeof(Force)) +
            loops.loops.size() * sizeof(SpatialLoopPlace<S>) +
@@ -77,28 +77,27 @@ class SpatialLoopSweeps {
   // Branches side by side: the three steps of operator() between which the body they fold into is
   // swept.
 
-  /// From the pose of that body, in acceleration form its velocities too, to
+  /// From the pose of that body, and its velocities in acceleration form, to
   /// brought_by_looped_branches().
   template <class In>
   bool looped_branches_inward(const S& t, const In& q, const In& x, const In& tau,
                               const RightSide<S>& right, const LoopBody<S>& onto);
   const Articulated<S>& brought_by_looped_branches() const { return looped_branches_[0]; }
-  /// From its motion V, in its axes.
+  /// From the motion V of that body, in its axes.
   template <class In, class Out>
   void looped_branches_outward(const In& q, const RightSide<S>& right, const Motion& V, Out u,
                                Out impulse, Out rate);
-  /// From its velocities in ground axes; what the loops' N − κ w do to it.
+  /// From the velocities of that body in ground axes; the loops' N − κ w on it.
   template <class Out>
   const Force& looped_branches_rates(const Vec3<S>& v, const Vec3<S>& w, const RightSide<S>& right,
                                      const Out& impulse, Out rate);
 
-  /// Of an S with directions: what d of the second row has besides (m), in all solutions from now
-  /// on; null: nothing.
+  /// Sets what solutions add to d of the second row (m), where S has directions; null: nothing.
   void add_to_rows(const S* besides) { besides_ = besides; }
   int singular_joint() const { return singular_joint_; }
-  /// Whether the last solution closed a folded branch on too weak a pivot: it is then wrong.
+  /// Whether the last solution is wrong, as it closed a folded branch on too weak a pivot.
   bool weak_looped_branch() const { return weak_looped_branch_; }
-  /// Whether one order of closing rows did for all states or branches of a pack: close_loop().
+  /// Whether the states or branches of a pack need several orders of closing rows: close_loop().
   bool uneven() const { return !even_; }
   /// Pivots of the last solution: calls report(row of Φ, w, τ).
   template <class Report>
@@ -118,7 +117,7 @@ class SpatialLoopSweeps {
     Column sigma;
   };
   struct RevoluteRecord {
-    RevoluteTurning<S> M;  ///< of M'
+    RevoluteTurning<S> M;  ///< part of M'
     RevoluteColumn<S> h;
     S Dfx, Dfy, Dnx, Dny, y0, Gx, Gy, inverse;
     Column C[4], g;  ///< rows fx, fy, nx, ny of C'
@@ -138,7 +137,8 @@ class SpatialLoopSweeps {
   };
 
   const auto& body(std::size_t k) const { return tree_->model->bodies[k]; }
-  /// Whether others sweep body k: branches side by side, or of branches the body they fold into.
+  /// Whether others sweep body k: a body of branches side by side, or, for branches, the body they
+  /// fold into.
   bool elsewhere(std::size_t k) const {
     if constexpr (of_looped_branches)
       return k == 0;
@@ -155,8 +155,8 @@ class SpatialLoopSweeps {
     return k < 0 ? nullptr : &bodies_[static_cast<std::size_t>(k)];
   }
 
-  /// Of a body that carries ends of loops, or takes branches that do, its motion from its own axes
-  /// to those of poses.
+  /// Takes the motion of a body with ends of loops, or with branches that have some, from its own
+  /// axes to those of poses.
   MOMENTA_INLINE void set_velocity(std::size_t k, const Motion& V) {
     const LoopPlan::Range ends = plan_->ends_of[k];
     if (ends.first == ends.last && !plan_->takes_branches[k]) return;
@@ -175,7 +175,7 @@ class SpatialLoopSweeps {
     if (l.motion >= 0) s.add_prescribed(prescribed(l), rates);
     return rates;
   }
-  /// What N asks of these.
+  /// The rates that N needs.
   MOMENTA_INLINE typename SpatialLoopPlace<S>::Rates motion_of(const Loop& l,
                                                                const SpatialLoopPlace<S>& s) const {
     auto rates = s.motion(loop_body(l.a), loop_body(l.b));
@@ -264,7 +264,7 @@ class SpatialLoopSweeps {
 
   const Tree* tree_;
   typename LoopsOf<Tree>::InTime in_time_;
-  const Loops* loops_;  ///< at the time
+  const Loops* loops_;  ///< at the current time
   const LoopPlan* plan_;
   OpenSlots open_slots_;
   Angles<S> angles_;
@@ -274,22 +274,22 @@ class SpatialLoopSweeps {
   std::vector<UserRecord<S>> users_;
   std::vector<AnyRecord> any_;
   std::vector<LoopBody<S>> bodies_;
-  std::vector<Force> wrenches_;  ///< as poses, about O; Ω of the bodies in acceleration form
+  std::vector<Force> wrenches_;  ///< in the axes of poses, about O; in acceleration form Ω
   std::vector<SpatialLoopPlace<S>> places_;
   std::vector<PrescribedMotion<S>> moving_;  ///< by motion
   std::vector<S> coupled_;                   ///< by loop: d of a coupler
-  Carried front_{}, ground_{};  ///< of the sweep under way, and where roots are gathered
+  Carried front_{}, ground_{};               ///< the sweep under way, and where roots are gathered
   std::vector<Carried> slots_;
   std::vector<Moving> outward_slots_;
   std::vector<Row> rows_;
   std::vector<Articulated<S>> looped_branches_;  ///< by body: what folded branches add to it
   std::vector<Motion> taken_;                    ///< by body: Ω of those that take branches
-  const S* compliance_ = nullptr;                ///< of the call under way: right.compliance
+  const S* compliance_ = nullptr;                ///< right.compliance of the call under way
   const S* besides_ = nullptr;                   ///< add_to_rows()
   std::vector<std::unique_ptr<Packs>> packs_;
-  const LoopedBranchGroups* branches_beside_ = nullptr;  ///< those that packs_ hold
-  const LoopedBranchGroups* branches_apart_ = nullptr;   ///< the same, while packs_ sweep them
-  std::size_t swept_;  ///< after so many bodies only those elsewhere follow
+  const LoopedBranchGroups* branches_beside_ = nullptr;  ///< held by packs_
+  const LoopedBranchGroups* branches_apart_ = nullptr;   ///< while packs_ sweep
+  std::size_t swept_;  ///< bodies up to the last not swept elsewhere
   int singular_joint_ = -1;
   bool weak_looped_branch_ = false, even_ = true;
 };
@@ -325,7 +325,7 @@ SpatialLoopSweeps<S, Rows, Momentum, Tree>::SpatialLoopSweeps(
       outward_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)),
       swept_(tree.links.size()) {
-  for (LoopBody<S>& body : bodies_) body.pose.axes = identity3<S>();  // of what is at rest
+  for (LoopBody<S>& body : bodies_) body.pose.axes = identity3<S>();  // bodies at rest
   for (const char takes : plan.takes_branches)
     if (takes && looped_branches_.empty()) {
       looped_branches_.resize(tree.links.size());
@@ -363,7 +363,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::evaluate(const S& t, const In& 
         weak_looped_branch_ |= pack->weak_looped_branch();
         continue;
       }
-      // One by one: which joint has no inertia, or each branch in its own order.
+      // One by one: finds the joint without inertia, or takes each branch in its own order.
       if (!branches_apart_) break;
       sweep_apart(nullptr);
       return evaluate(t, q, x, tau, right, u, impulse, rate);

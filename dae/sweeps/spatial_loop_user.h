@@ -8,7 +8,7 @@
 //
 //   u_j = e_j / d_j − h_jᵀ Ω − g_jᵀ σ,  then Ω += E_j u_j.
 //
-// What is given of the motion, c (Ω_t; in acceleration form velocity products, Ė u and dΩ_t/dt),
+// The given motion c (Ω_t; in acceleration form velocity products, Ė u and dΩ_t/dt),
 // adds M' c to D' and C'ᵀ c to d. Ė of (35) acts on P* with the impulses of the loops below. Part
 // of spatial_loop_sweeps.h.
 

@@ -6,12 +6,12 @@
 namespace momenta {
 namespace {
 
-/// Joints and loops of a branch as numbers: equal of branches of one shape.
+/// Joints and loops of a branch as numbers, equal for branches of one shape.
 using LoopedBranchShape = std::vector<int>;
 
 struct LoopedBranch {
   int root = 0, end = 0;   ///< its bodies: [root, end)
-  std::vector<int> loops;  ///< of the model
+  std::vector<int> loops;  ///< indices in the model
   bool fits = true;        ///< may be taken beside others
 };
 
@@ -48,7 +48,7 @@ LoopPlan plan_of(const LoopModel<Spatial>& loops, const LoopedBranch& looped_bra
   return plan_folded(parents, shapes);
 }
 
-/// By root: the branches that are folded.
+/// Folded branches by root.
 std::map<int, LoopedBranch> folded_looped_branches(const LinkTree& tree,
                                                    const LoopModel<Spatial>& loops,
                                                    const LoopPlan& plan) {

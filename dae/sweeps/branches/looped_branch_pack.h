@@ -12,7 +12,7 @@ namespace momenta {
 template <class S, int Rows, bool Momentum, class Tree>
 class SpatialLoopSweeps;
 
-/// What holds branches beside a single state's number; void: nothing does.
+/// Scalar of branches beside a single state's S; void: none.
 template <class S>
 struct LoopedBranchLanes {
   using type = void;
@@ -22,7 +22,7 @@ struct LoopedBranchLanes<Pack<1, L>> {
   using type = Pack<looped_branch_lanes_at(L), L>;
 };
 
-/// One pack; One: a single state's number, S: a pack of them at the same level.
+/// A pack of branches. One: a single state's number; S: a pack of them at the same level.
 template <class One, class S, bool Momentum>
 class LoopedBranchPack {
   using Sweeps = SpatialLoopSweeps<S, most_looped_branch_rows, Momentum, LoopedBranchTree<S>>;
@@ -58,14 +58,14 @@ class LoopedBranchPack {
     for (auto* x : {&sigma_, &centre_, &compliance_})
       x->resize(static_cast<std::size_t>(loops_.rows));
   }
-  // Its sweeps point to its tree.
+  // Not copied: its sweeps point to its tree.
   LoopedBranchPack(const LoopedBranchPack&) = delete;
   LoopedBranchPack& operator=(const LoopedBranchPack&) = delete;
 
   int onto() const { return group_.onto; }
 
-  /// Adds what the branches bring to the body in the place and motion of `onto`. False when a joint
-  /// has no inertia to move, or one order of elimination does not do for all branches.
+  /// Adds the branches' share to the body in the place and motion of `onto`. False when a joint has
+  /// no inertia to move, or branches need different orders of elimination.
   template <class In>
   bool inward(const One& t, const In& q, const In& x, const In& tau, const RightSide<One>& right,
               const LoopBody<One>& onto, Articulated<One>& sum) {
@@ -102,7 +102,7 @@ class LoopedBranchPack {
     scatter(u_, u_at_, u);
     scatter(sigma_, row_at_, impulse);
   }
-  /// ṗ of the branches, complete; adds to `wrench` what their loops do to the body, whose
+  /// The whole ṗ of the branches; adds to `wrench` what their loops do to the body, whose
   /// velocities are in `onto`; ground axes.
   template <class Out>
   void inertial_rates(const LoopBody<One>& onto, Spatial::Force<One>& wrench, Out rate) {

@@ -1,7 +1,7 @@
 #pragma once
-// Branches of one shape as one mechanism whose constants are packs, a branch in each lane of S:
-// what the sweeps of spatial_loop_sweeps.h read in place of LinkTree and LoopModel. Body 0 is the
-// one the branches fold into: it is another's, and not swept here.
+// Branches of one shape as one mechanism whose constants are packs, a branch in each lane of S, in
+// place of LinkTree and LoopModel in spatial_loop_sweeps.h. Body 0 is the one the branches fold
+// into, which is swept elsewhere.
 
 #include <momenta/core/kernel/branches/branch_link.h>
 #include <momenta/core/kernel/general_joint.h>

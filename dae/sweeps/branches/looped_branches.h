@@ -21,17 +21,17 @@ namespace momenta {
 
 /// Up to `lanes` branches that fold into one body.
 struct LoopedBranchGroup {
-  int onto = -1;              ///< that body
-  int lanes = 0, count = 0;   ///< of these, so many in use; the others repeat the last
-  int bodies = 0, loops = 0;  ///< of a branch
+  int onto = -1;              ///< the body
+  int lanes = 0, count = 0;   ///< lanes, and those in use; the others repeat the last
+  int bodies = 0, loops = 0;  ///< number in one branch
   std::vector<int> roots;     ///< by lane; a branch's bodies follow its root
-  std::vector<int> loop;      ///< of the model, at [i · lanes + lane]
-  LoopPlan plan;              ///< of one branch: body 0 that it folds into, and its own from 1 on
+  std::vector<int> loop;      ///< indices in the model, at [i · lanes + lane]
+  LoopPlan plan;              ///< plan of one branch: body 0 that it folds into, its own from 1 on
 };
 
 struct LoopedBranchGroups {
   std::vector<LoopedBranchGroup> groups;
-  std::vector<char> bodies, loops;  ///< whether a body or a loop of the model is in one of them
+  std::vector<char> bodies, loops;  ///< whether a body or a loop of the model is in a group
 
   // Out of line: the sweeps that own one are compiled for several instruction levels.
   LoopedBranchGroups();

@@ -15,9 +15,8 @@
 
 namespace momenta {
 
-/// The same loops with points and axes in the frames of the links. In space these are the model's.
+/// Loops with points and axes in the frames of the links; in space these are the model's.
 LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree);
-/// The same in space.
 LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree& tree);
 
 /// Loops as the sweeps carry them.
@@ -74,12 +73,11 @@ SweptLoops<Space> swept_loops([[maybe_unused]] const Tree& tree, const Model<Spa
 }
 
 /// `branches_side_by_side`: in space, of one state, folded branches of one shape
-/// (branches/branches.h).
+/// (branches/looped_branches.h).
 /// @pre level_at_most(level) is level, swept.plan.fits(); tree and swept loops stay where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
                                                  const SweptLoops<Planar>& swept, int level,
                                                  bool branches_side_by_side = true);
-/// The same in space.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
                                                  const SweptLoops<Spatial>& swept, int level,
                                                  bool branches_side_by_side = true);

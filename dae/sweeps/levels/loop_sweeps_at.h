@@ -91,7 +91,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     return right.of_rows(reinterpret_cast<const One*>(centre),
                          reinterpret_cast<const One*>(compliance));
   }
-  /// Multipliers of the rows as they are swept to those of Φ, in place.
+  /// Turns multipliers of swept rows into those of Φ, in place.
   void to_given(double* sigma, std::ptrdiff_t stride, const double* centre) {
     if (!shared_.empty()) shared_.to_given(sigma, stride);
     if (!carried_.all()) carried_.to_given(sigma, stride, centre);
@@ -118,7 +118,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
   /// Packs whose records leave the cache take longer than the same states one after the other.
   static constexpr std::size_t most_bytes = 16 << 20;
-  /// The states in packs by `many`, which is made when asked for, or one by one.
+  /// Sweeps states in packs by `many`, made at first use, or one by one.
   template <class OfMany, class OfOne>
   bool each_pack(double t, const LoopedStates& s, std::unique_ptr<OfMany>& many, OfOne& one,
                  double fade, double leak) {
@@ -143,7 +143,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
       for (std::size_t i = 0; i < s.count; ++i) to_given(s.sigma + i, s.stride, nullptr);
     return all;
   }
-  /// One pack.
+  /// Sweeps one pack.
   template <class X, class Sweeps>
   bool taken(Sweeps& sweeps, double t, const LoopedStates& s, double fade, double leak) {
     RightSide<X> right;

@@ -11,14 +11,14 @@ namespace momenta {
 
 /// States side by side: coordinate i of state s is at base[i * stride + s].
 struct LoopedStates {
-  const double* q;              ///< nq rows
-  const double* p;              ///< nv rows; of acceleration() u
-  double* u;                    ///< nv rows; of acceleration() u̇
-  double* sigma;                ///< m rows; of acceleration() λ
-  double* pdot;                 ///< nv rows; of acceleration() not used
-  std::ptrdiff_t stride;        ///< from one row to the next
-  std::size_t count;            ///< how many states
-  const double* tau = nullptr;  ///< of acceleration(): nv rows; null: zero
+  const double* q;        ///< nq rows
+  const double* p;        ///< nv rows; of acceleration() u
+  double* u;              ///< nv rows; of acceleration() u̇
+  double* sigma;          ///< m rows; of acceleration() λ
+  double* pdot;           ///< nv rows; of acceleration() not used
+  std::ptrdiff_t stride;  ///< from one row to the next
+  std::size_t count;
+  const double* tau = nullptr;  ///< acceleration() only: nv rows; null: zero
   bool body_forces = false;     ///< RightSide::body_forces
 
   /// `of` states from `first` on.
@@ -53,8 +53,8 @@ class LoopedSweeps {
   /// momentum() with rates for many states, `width()` at a time, with centre zero. False when a
   /// joint has no inertia in some state.
   virtual bool momentum(double t, const LoopedStates& states, double fade, double leak) = 0;
-  /// acceleration() of many states likewise; τ and what the joints' own springs, dampers and
-  /// torques do.
+  /// acceleration() of many states likewise; adds the joints' own springs, dampers and torques to
+  /// τ.
   virtual bool acceleration(double t, const LoopedStates& states, double fade) = 0;
 
   /// Rows of Φ that faded in the last solution of one state by momentum(), or by acceleration()
@@ -64,7 +64,7 @@ class LoopedSweeps {
   /// faded ones.
   struct Pivots {
     double weakest = std::numeric_limits<double>::infinity();  ///< none: infinite
-    int faded = 0;                                             ///< how many
+    int faded = 0;
   };
   /// The pivots of the last solution of one state by momentum(), or by acceleration().
   virtual Pivots pivots(bool of_momentum) const = 0;

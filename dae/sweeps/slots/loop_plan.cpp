@@ -134,21 +134,21 @@ std::vector<int> foldable_looped_branches(const std::vector<int>& parents,
 struct Opened {
   std::vector<int> fronts, gathered;
   int closes_at = -1;
-  int child = -1;  ///< where it closes there: closing_child()
-  int root = -1;   ///< where it closes at the ground
+  int child = -1;  ///< closing_child()
+  int root = -1;   ///< root at which it closes at the ground
 };
 
-/// Colours the fronts. They are vertices of a tree: above the fronts of its children, a body's own,
-/// beside the first child's, and one below the other those where the others are gathered; roots one
-/// behind the other above their own fronts. Each loop is open in a part of it that hangs together:
-/// taken from the top, a loop meets at its topmost front all that were taken before and are open
-/// anywhere with it, so that as many slots do as are open at once (of loops of one size: their
-/// graph is chordal; Gavril, J. Combin. Theory B 16 (1974) 47).
+/// Colours the fronts, the vertices of a tree: a body's own stands above its children's, next to
+/// the first child's, with those where the others are gathered one below the other; roots one
+/// behind the other above their own fronts. Each loop is open in a connected part: taken from the
+/// top, a loop meets at its topmost front all taken before that are open anywhere with it, so that
+/// as many slots do as are open at once (for loops of one size: their graph is chordal; Gavril, J.
+/// Combin. Theory B 16 (1974) 47).
 void take_slots(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                 const std::vector<Opened>& opened, LoopPlan& plan, std::vector<std::uint64_t>& used,
                 std::vector<std::uint64_t>& used_gathered) {
   const auto n = static_cast<int>(parents.size());
-  // Of child i, i = 1, 2 …: its parent's and i more, as it is gathered i − 1 below its parent.
+  // Depth of child i = 1, 2 …: its parent's plus i, as it is gathered i − 1 below its parent.
   std::vector<int> depth, deepest;
   for (const int parent : parents) {
     depth.push_back(parent < 0 ? n : ++deepest[static_cast<std::size_t>(parent)]);
@@ -157,7 +157,7 @@ void take_slots(const std::vector<int>& parents, const std::vector<LoopShape>& l
   const auto top = [&](const Opened& o) {
     return o.child >= 0       ? depth[static_cast<std::size_t>(o.child)] - 1
            : o.closes_at >= 0 ? depth[static_cast<std::size_t>(o.closes_at)]
-                              : std::max(o.root, 0);  // none of a folded branch: within it alone
+                              : std::max(o.root, 0);  // a folded branch's loops have no root
   };
   std::vector<std::size_t> from_the_top(loops.size());
   std::iota(from_the_top.begin(), from_the_top.end(), std::size_t{0});
@@ -312,7 +312,7 @@ int width(const LoopPlan& plan) {
   return plan.slots > LoopPlan::most_slots ? plan.slots : lanes_for(plan.slots, true);
 }
 
-/// The one of narrower fronts.
+/// The plan with narrower fronts, gathered or not.
 LoopPlan of_narrower_fronts(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                             const std::vector<int>& folded_onto) {
   LoopPlan gathered = planned(parents, loops, folded_onto, true);

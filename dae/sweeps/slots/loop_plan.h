@@ -55,7 +55,7 @@ struct LoopPlan {
 
   std::vector<End> ends;                ///< by body
   std::vector<Range> ends_of;           ///< per body, into ends
-  std::vector<Range> own_ends_of;       ///< of these, those that enter the body's own front
+  std::vector<Range> own_ends_of;       ///< ends that enter the body's own front
   std::vector<Range> gathered_ends_of;  ///< per body: those on its parent that wait for it
   std::vector<Coupling> couplings;      ///< by body, of its joint
   std::vector<Range> couplings_of;      ///< per body, into couplings
@@ -85,13 +85,13 @@ struct LoopShape {
   std::vector<std::pair<int, double>> joints{};
 };
 
-/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Where that is
-/// allowed, loops close where children are gathered (`may_gather`) if fewer lanes do then, else in
-/// the bodies' own fronts, which stay in registers; branches are folded (`may_fold`) where slots
-/// run out without. Where more than most_slots are needed all the same, `slots` says so.
+/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). With `may_gather`
+/// loops close where children are gathered if that takes fewer lanes, else in the bodies' own
+/// fronts, which stay in registers; with `may_fold` branches are folded where slots run out.
+/// `slots` may still exceed most_slots.
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                     bool may_fold, bool may_gather);
-/// With every branch folded that can be.
+/// The plan with every branch folded that can be.
 LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops);
 
 }  // namespace momenta

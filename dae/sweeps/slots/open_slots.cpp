@@ -40,7 +40,7 @@ OpenSlots::OpenSlots(const LoopPlan& plan, const std::vector<int>& parents,
   for (std::size_t k = 0; k < n; ++k)
     for (const int loop : closings(plan.gathered_closings_of[k]))
       closes_at[static_cast<std::size_t>(loop)] = parents[k];
-  std::vector<std::vector<int>> opened(n);  // loops that go on to the parent, of no first child
+  std::vector<std::vector<int>> opened(n);  // loops that children but the first hand to the parent
   // Every loop is open from its ends, or the joints it couples, up to where it closes.
   const auto climb = [&](int loop, std::size_t from) {
     const auto at = static_cast<std::size_t>(loop);
@@ -60,7 +60,7 @@ OpenSlots::OpenSlots(const LoopPlan& plan, const std::vector<int>& parents,
     for (int i = plan.couplings_of[k].first; i < plan.couplings_of[k].last; ++i)
       climb(plan.couplings[static_cast<std::size_t>(i)].loop, k);
   }
-  // At the ground from its last root to the one that closes it.
+  // Slots open at the ground: of a loop from its last root to the one that closes it.
   std::vector<SlotGroups> stays(n, 0);
   for (std::size_t k = 0; k < n; ++k)
     if (parents[k] < 0 && plan.folded_onto[k] < 0)

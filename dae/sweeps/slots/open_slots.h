@@ -1,6 +1,6 @@
 #pragma once
-// Which slots are in use where: of a pack of states each slot is a pack of its own, and work on
-// slots of no open loop would be work for nothing. Slots stand in groups of two.
+// Slots in use, front by front: in a pack of states each slot is a pack of its own, and work on
+// slots of no open loop would be wasted. Slots stand in groups of two.
 
 #include <momenta/dae/sweeps/slots/loop_plan.h>
 
@@ -10,18 +10,18 @@ using SlotGroups = unsigned;  ///< bit g: slots 2g and 2g + 1
 
 struct OpenSlots {
   struct Front {
-    SlotGroups all = 0;    ///< of loops open at the body, those it closes too
-    SlotGroups open = 0;   ///< of those that go on to its parent
-    SlotGroups fresh = 0;  ///< of those its first child did not bring
-    SlotGroups slot = 0;   ///< of those its other children bring
-    SlotGroups born = 0;   ///< of those no child brought, where no loop closes
-    bool brought = false;  ///< its other children bring some, or close them
-    /// Where it is gathered with its later siblings, of roots at the ground: of those open when it
-    /// has arrived, and of these those that they did not bring.
+    SlotGroups all = 0;    ///< groups open at the body, with those it closes
+    SlotGroups open = 0;   ///< going on to its parent
+    SlotGroups fresh = 0;  ///< not brought by its first child
+    SlotGroups slot = 0;   ///< brought by its other children
+    SlotGroups born = 0;   ///< brought by no child, where no loop closes
+    bool brought = false;  ///< other children bring loops, or close them
+    /// Groups open where it is gathered with its later siblings (roots: at the ground), and those
+    /// of them not brought by these.
     SlotGroups gathered = 0, gathered_fresh = 0;
   };
   std::vector<Front> fronts;       ///< per body
-  std::vector<SlotGroups> beside;  ///< per loop: of those still open once it has closed
+  std::vector<SlotGroups> beside;  ///< per loop: open once it has closed
 
   /// From the parents of all bodies and the rows of all loops. O(length of all loops). Out of line
   /// like the destructor: the sweeps that call them are compiled for several instruction levels.

@@ -12,7 +12,7 @@
 
 #include <type_traits>
 
-/// Of a lambda whose captures must stay in registers.
+/// For lambdas whose captures must stay in registers.
 #define MOMENTA_INLINED __attribute__((always_inline))
 
 namespace momenta {
@@ -74,8 +74,8 @@ struct Slots<Pack<1, Level>, Rows> {
 
   static MOMENTA_INLINE Part all(const S& x) { return Part(x.v); }
   MOMENTA_INLINE S operator[](int i) const { return S(v[i / width].v[i % width]); }
-  /// The same of a slot known here: the register it is read from stays one. An index that is
-  /// constant only after inlining reads memory, and then whatever it is part of lives there.
+  /// Slot i, known here: the register it is read from stays one. An index that is constant only
+  /// after inlining reads memory, and whatever it is part of lives there.
   template <int i>
   MOMENTA_INLINE S at() const {
     constexpr int part = i / width, place = i % width;
@@ -92,7 +92,7 @@ struct Slots<Pack<1, Level>, Rows> {
   MOMENTA_INLINE void add(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k].v += places(k) == i ? Part(x.v).v : Part(0.0).v;
   }
-  /// Times unit vectors, which costs less than a choice where i is not known here.
+  /// Adds by unit vectors, which cost less than a choice where i is not known here.
   MOMENTA_INLINE void add_at(int i, const S& x) {
     const double* const at = units.of[i];
     each<parts>([&](auto k) MOMENTA_INLINED { v[k] = v[k] + Part::load(at + k * width) * all(x); });
@@ -258,8 +258,8 @@ MOMENTA_INLINE Slots<Pack<1, L>, Rows> operator-(Slots<Pack<1, L>, Rows> a) {
   return a;
 }
 
-// Of both results the values are chosen: x or y itself would be chosen by address, and live in
-// memory with all it is part of.
+// Values are chosen: x or y itself would be chosen by address, and live in memory with all it is
+// part of.
 
 /// x where the condition a > b holds, else y; state by state.
 template <int W, int L>

@@ -16,7 +16,7 @@ struct LoopBody {
   Vec3<S> v, w;  ///< velocity of O, angular velocity
 };
 
-/// `v` constant in the body; of several mechanisms side by side, one for each.
+/// `v`: constant in the body; a pack for mechanisms side by side.
 template <class S, class Constant>
 Vec3<S> in_ground(const LoopBody<S>* body, const Vec3<Constant>& v) {
   Vec3<S> r;
@@ -27,11 +27,11 @@ Vec3<S> in_ground(const LoopBody<S>* body, const Vec3<Constant>& v) {
   return r;
 }
 
-/// What drives prescribe of a loop, ground axes (LoopModel::Motion).
+/// Prescribed motion of a loop, ground axes (LoopModel::Motion).
 template <class S>
 struct PrescribedMotion {
-  Vec3<S> v, a;                                                  ///< of x_B
-  Vec3<S> turning_a, turning_a_rate, turning_b, turning_b_rate;  ///< of the axes
+  Vec3<S> v, a;                                                  ///< velocity, acceleration of x_B
+  Vec3<S> turning_a, turning_a_rate, turning_b, turning_b_rate;  ///< turning of the axes
   S given{}, given_rate{};                                       ///< l l̇ / l₀, its derivative
 
   void place(const LoopModel<Spatial>::Loop& l, const LoopModel<Spatial>::Motion& m,
@@ -50,8 +50,8 @@ struct PrescribedMotion {
 template <class S>
 struct SpatialLoopPlace {
   Vec3<S> ra, rb, gap;  ///< x_A − O_A, x_A − O_B, D = x_A − x_B
-  Vec3<S> F[3];         ///< of rows of points
-  Vec3<S> c[6];         ///< of rows of axes
+  Vec3<S> F[3];         ///< rows of points
+  Vec3<S> c[6];         ///< rows of axes
   Vec3<S> a[3], b[3];
 
   template <class Loop>
@@ -67,7 +67,7 @@ struct SpatialLoopPlace {
       F[0] = S(l.per_length) * gap;
       return;
     }
-    if (l.n_axes == 0) {  // a and b are asked for by rows of axes alone
+    if (l.n_axes == 0) {  // rows of axes alone need a and b
       for (int j = 0; j < l.n_points; ++j)
         F[j] =
             in_ground(B, l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
@@ -97,7 +97,7 @@ struct SpatialLoopPlace {
     Vec3<S> wa{}, wb{}, u{}, at_a{}, at_b{}, vb{};
     S given{};  ///< l l̇ / l₀
   };
-  /// All but the points of B.
+  /// All rates but those of the points of B.
   MOMENTA_INLINE Rates motion(const LoopBody<S>* A, const LoopBody<S>* B) const {
     Rates r;
     if (A) {
@@ -159,7 +159,7 @@ struct SpatialLoopPlace {
     return dot(F[row], apart) + S(2.0) * dot(turning, u) +
            dot(cross(r.wb, turning) + cross(alpha_b, F[row]), gap);
   }
-  /// What J̇ V of a point along b_j is b_j times: (ω_B × b)·x = b·(x × ω_B).
+  /// Vector whose part along b_j is J̇ V of a point: (ω_B × b)·x = b·(x × ω_B).
   Vec3<S> apart_bias(const Rates& r) const {
     return cross(r.wa, cross(r.wa, ra)) - cross(r.wb, r.u - r.vb) + cross(r.u - r.at_a, r.wb);
   }
