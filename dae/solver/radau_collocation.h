@@ -86,8 +86,8 @@ struct RadauNodes {
   }
 };
 
-/// `System` has size(); residual(t, y, ydot, r) in S, of S t; and slopes(t, y, ydot, by_y, by_rate)
-/// in doubles, dense by columns; each false where it fails.
+/// `System` has residual(t, y, ydot, r) in S, of S t; slopes(t, y, ydot, by_y, by_rate) in doubles,
+/// dense by columns; each false where it fails.
 template <class S>
 class RadauCollocation {
  public:
@@ -116,7 +116,7 @@ class RadauCollocation {
     ydot = k_[s_ - 1];
     return true;
   }
-  /// Of the last step that converged.
+  /// Estimate of the last step that converged.
   double last_estimate() const { return estimate_; }
 
  private:
@@ -180,12 +180,12 @@ class RadauCollocation {
     }
   }
 
-  /// K to a last change of h K below `tolerance`.
+  /// Iterates K to a last change of h K below `tolerance`.
   template <class System>
   bool iterate(const S& t, const S& h, const std::vector<S>& y, const std::vector<double>& scale,
                double tolerance, System& system) {
-    // Of index k the iteration takes up to k turns to gain: what one unknown misses the next one
-    // takes over.
+    // At index k the iteration takes up to k turns to gain: the error passes from one unknown to
+    // the next.
     std::array<double, 3> before{};
     const double length = value_of(h);
     for (int count = 0; count < most_iterations; ++count) {
