@@ -49,7 +49,7 @@ Actuation::Unheld Actuation::efforts(ScaledLoops& loops, const LoopIslands& isla
   e.move(u.data());
   e.joint_forces(q.data(), u.data(), udot.data(), nullptr, r_.data());
   const bool tree_of_actuators = islands.all().size() == actuated_.size() && mechanism_.m() == 0;
-  if (!tree_of_actuators) {  // what is not held is judged against these
+  if (!tree_of_actuators) {  // scale of forces that nothing holds
     e.joint_forces(q.data(), u.data(), none_.data(), nullptr, moving_.data());
     e.move(none_.data());
     e.joint_forces(q.data(), none_.data(), none_.data(), nullptr, still_.data());
@@ -70,7 +70,7 @@ Actuation::Unheld Actuation::efforts(ScaledLoops& loops, const LoopIslands& isla
     }
     const VectorXd b = island.N.transpose() * scaled;
     MatrixXd G(island.freedoms(), count);
-    VectorXd root(count);  // of the weights
+    VectorXd root(count);  // root of the weights
     for (Eigen::Index i = 0; i < count; ++i) {
       root[i] = std::sqrt(weights_[actuators[static_cast<std::size_t>(i)]]);
       G.col(i) = island.N.row(place_[k][static_cast<std::size_t>(i)]).transpose() / root[i];
@@ -84,7 +84,7 @@ Actuation::Unheld Actuation::efforts(ScaledLoops& loops, const LoopIslands& isla
       rank = static_cast<int>(cod.rank());
       VectorXd y = cod.solve(b);
       left = b - G * y;
-      if (rank == island.freedoms()) {  // one refinement: b is met to rounding
+      if (rank == island.freedoms()) {  // refined: b is met to rounding
         y += cod.solve(left);
         left = b - G * y;
       }

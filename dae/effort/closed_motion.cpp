@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double longest_step = 0.1;  // of a given coordinate, in units
+constexpr double longest_step = 0.1;  // step of a given coordinate, in units
 constexpr int most_corrections = 30;
-constexpr double closed = 1e-12;  // |Φ|∞ in units, at least
+constexpr double closed = 1e-12;  // least |Φ|∞, in units
 constexpr double settled = 1e-7;  // a step after which the next is rounding
 
 constexpr int most_rates = 2000;
@@ -52,7 +52,7 @@ std::string ClosedMotion::at(double t) const {
   return "at t = " + reading::digits(t) + " s ";
 }
 
-/// Where given coordinates are to go from q, in units; others zero.
+/// Way of given coordinates to their target, in units; others zero.
 VectorXd ClosedMotion::way_to(const VectorXd& q, const VectorXd& target) {
   VectorXd apart = target - q;
   for (const auto& body : mechanism_.tree().bodies)
@@ -68,7 +68,7 @@ VectorXd ClosedMotion::way_to(const VectorXd& q, const VectorXd& target) {
   return rates;
 }
 
-/// δ with J δ = right and given entries as near to `wanted` as can be.
+/// δ with J δ = right and given entries nearest to `wanted`.
 VectorXd ClosedMotion::nearest(const VectorXd& right, const VectorXd& wanted, double t) {
   VectorXd all(mechanism_.nv());
   for (std::size_t k = 0; k < given_.size(); ++k) {
@@ -99,7 +99,7 @@ VectorXd ClosedMotion::nearest(const VectorXd& right, const VectorXd& wanted, do
   return all;
 }
 
-/// The given motion leaves N y open where E N y = 0.
+/// Refuses a motion that leaves N y open, E N y = 0.
 void ClosedMotion::refuse_open(double t, const LoopIsland& island) {
   const auto k = static_cast<std::size_t>(&island - islands_.all().data());
   const int freedoms = island.freedoms();
@@ -114,7 +114,7 @@ void ClosedMotion::refuse_open(double t, const LoopIsland& island) {
     open = lu.kernel();
     count = freedoms - static_cast<int>(lu.rank());
   }
-  // Rates that move most in what is left, one for each freedom.
+  // Largest rates in the open motions, one for each freedom.
   Eigen::ColPivHouseholderQR<MatrixXd> moves((island.N * open).transpose());
   std::vector<std::string> names;
   for (int i = 0; i < count; ++i)
@@ -163,12 +163,12 @@ void ClosedMotion::refuse(double t, const VectorXd& missing, int worst, const st
                    loop_word(mechanism_) + "s allow");
 }
 
-/// Φ beyond what contradictions leave, in units.
+/// Φ less contradictions, in units.
 VectorXd ClosedMotion::gap(double t, const VectorXd& q) {
   return loops_.gap(t, q) - contradiction_.open;
 }
 
-/// Newton's method to a target that is near. False where it does not come there.
+/// Newton's method; false where it fails.
 bool ClosedMotion::close(double t, const VectorXd& target, VectorXd& q) {
   for (int k = 0; k < most_corrections; ++k) {
     const VectorXd gap = this->gap(t, q);
@@ -226,7 +226,7 @@ void ClosedMotion::go_to(std::size_t number, VectorXd& q, VectorXd& u, VectorXd&
                0, rates_[static_cast<std::size_t>(worst)].unit.find("/s")));
   gap_ = std::max(gap_, gap);
 
-  // Rates, of nonholonomic rows too; then accelerations.
+  // Rates, with nonholonomic rows; then accelerations.
   loops_.rows = all_rows_;
   loops_.gap(t, q_);
   islands_.factor(loops_, contradiction_.pivot);

@@ -19,10 +19,10 @@ namespace momenta {
 namespace {
 
 using Eigen::VectorXd;
-constexpr double rounding = 1e-6;  // of a change of multipliers
+constexpr double rounding = 1e-6;  // relative
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 
-/// An actuator at every rate. O(bodies)
+/// O(bodies)
 std::vector<Actuator> at_all_rates(const Mechanism& mechanism) {
   const LoopUnits units(mechanism);
   std::vector<Actuator> all;
@@ -102,7 +102,6 @@ std::vector<int> actuated_rates(const Mechanism& mechanism, const EffortRequest&
   return rates;
 }
 
-/// Thrusts of helical joints, from the wrenches of a row.
 class Thrusts {
  public:
   Thrusts(const Mechanism& mechanism, const std::vector<Actuator>& actuators)
@@ -130,7 +129,7 @@ class Thrusts {
       return thrust;
     };
     VectorXd thrust = through(row.u, row.udot, lambda);
-    // Thrusts are affine in λ: what multipliers without effect on the motion add, at rest.
+    // Thrusts are affine in λ: change by multipliers without effect on the motion.
     VectorXd idle = VectorXd::Zero(lambda.size());
     for (const LoopIsland& island : islands.all()) {
       if (island.rank() == static_cast<int>(island.rows.size())) continue;
@@ -156,7 +155,7 @@ class Thrusts {
   Poses poses_;
 };
 
-/// "A (1), B (-0.3)": rates that move most in what is not held, the largest as 1.
+/// "A (1), B (-0.3)": largest rates of a motion, relative.
 std::string moving(const EffortResult& result, const VectorXd& way) {
   constexpr std::size_t most = 4;
   std::vector<int> order(static_cast<std::size_t>(way.size()));
@@ -263,7 +262,7 @@ EffortResult effort(const Mechanism& mechanism, const EffortRequest& request) {
     EffortRow row;
     row.t = motion.rows[i].t;
     closed.go_to(i, row.q, row.u, row.udot);
-    if (request.motion.poses_alone) {  // whatever moves in time stands still
+    if (request.motion.poses_alone) {  // all is at rest
       row.u.setZero();
       row.udot.setZero();
     }

@@ -12,7 +12,7 @@ namespace {
 using Eigen::VectorXd;
 constexpr int neighbours = 7;
 
-/// Consecutive places in q and u that are given together: one coordinate, or a joint's with a
+/// Consecutive places in q and u given together: one coordinate, or all of a joint with a
 /// quaternion.
 struct Together {
   std::string joint;
@@ -31,12 +31,11 @@ std::vector<Together> together(const Mechanism& mechanism) {
   return all;
 }
 
-/// The values of a table's columns.
 class Table {
  public:
   explicit Table(const Reference& r) : r_(r) {}
 
-  /// Where a column stands. @throws SceneError where its unit is another
+  /// @throws SceneError where the column's unit differs
   std::optional<std::size_t> find(const Column& column) const {
     for (std::size_t i = 0; i < r_.columns().size(); ++i) {
       const std::string& found = r_.columns()[i];
@@ -47,7 +46,7 @@ class Table {
     }
     return std::nullopt;
   }
-  /// Where all of them stand; empty: none does. @throws SceneError where some do
+  /// Places of all columns; empty: none is there. @throws SceneError where some are
   std::vector<std::size_t> find_all(const std::vector<Column>& columns, int first,
                                     int count) const {
     std::vector<std::size_t> places;
@@ -71,7 +70,7 @@ class Table {
   const Reference& r_;
 };
 
-/// Rows that are differentiated at each row, and their weights.
+/// Rows of the difference at each row, and their weights.
 class Differences {
  public:
   explicit Differences(const std::vector<double>& t) {
@@ -84,7 +83,7 @@ class Differences {
                              t[static_cast<std::size_t>(i)]));
     }
   }
-  /// The derivative of order 1 or 2 at a row of what value(row) is.
+  /// Derivative of order 1 or 2 of value(row) at a row.
   template <class Value>
   double operator()(std::size_t row, int order, Value value) const {
     double sum = 0;
@@ -234,7 +233,7 @@ class Giver {
       first[k] = (*differences_)(i, 1, value);
       second[k] = (*differences_)(i, 2, value);
     }
-    // x = y/|y|: ẋ = (ẏ − x n)/|y| with n = d|y|/dt, ẍ = (ÿ − 2 ẋ n − x ṅ)/|y|; what is along x
+    // x = y/|y|: ẋ = (ẏ − x n)/|y| with n = d|y|/dt, ẍ = (ÿ − 2 ẋ n − x ṅ)/|y|; the part along x
     // turns nothing.
     const Eigen::Index at = part.nq - 4;
     const Eigen::Vector4d y = row.q.segment(part.q + at, 4), x = y.normalized();

@@ -45,7 +45,7 @@ LoopIslands::LoopIslands(const Mechanism& mechanism)
     : island_(static_cast<std::size_t>(mechanism.nv())),
       column_(island_.size()),
       row_(static_cast<std::size_t>(mechanism.m())) {
-  // Each rate begins alone; the rates of a row come under one root.
+  // Each rate begins alone; the rates of a row get one root.
   std::vector<int> root(island_.size());
   std::iota(root.begin(), root.end(), 0);
   const auto root_of = [&](int i) {

@@ -1,6 +1,6 @@
 #pragma once
-// The rates that loops tie together, by islands: rates that share an equation with each other, and
-// these equations. In units of the scene, δ = C⁻¹ u, each island has
+// Islands: rates that share loop equations, and these equations. In units of the scene, δ = C⁻¹ u,
+// each island has
 //
 //   J = D⁻¹ Φ_q C,      Jᵀ P = ( Y  N ) ( R₁₁ R₁₂ ; 0 0 )      QR with pivots P, rank r
 //
@@ -17,24 +17,24 @@
 
 namespace momenta {
 
-/// Pivots and singular directions that count, beside the largest.
+/// Relative pivot or singular value that counts.
 inline constexpr double independent_pivot = 1e-9;
 
 struct LoopIsland {
   std::vector<int> rates, rows;  ///< places in u and Φ, ascending
-  Eigen::MatrixXd Y, N;          ///< of the last factor()
+  Eigen::MatrixXd Y, N;          ///< bases of the last factor()
   Eigen::MatrixXd R;             ///< (R₁₁ R₁₂)
   Eigen::VectorXi order;         ///< P: places among `rows`, independent ones first
   int rank() const { return static_cast<int>(Y.cols()); }
   int freedoms() const { return static_cast<int>(N.cols()); }
 
-  /// δ of least norm with J δ = b, b of this island's rows.
+  /// δ of least norm with J δ = b; b by `rows`.
   Eigen::VectorXd particular(const Eigen::VectorXd& b) const;
-  /// λ with Jᵀλ = f, or as near as can be; f of this island's rates.
+  /// λ with Jᵀλ = f, or nearest; f by `rates`.
   Eigen::VectorXd multipliers(const Eigen::VectorXd& f) const;
-  /// ν with Jᵀν = 0, no two alike: one column for each row that follows from others.
+  /// Independent ν with Jᵀν = 0, as many as dependent rows.
   Eigen::MatrixXd idle() const;
-  /// The entries of a vector that belong here, by `rates` or `rows`.
+  /// Entries at `places`, which are `rates` or `rows`.
   static Eigen::VectorXd part(const std::vector<int>& places, const Eigen::VectorXd& all);
   static void put(const std::vector<int>& places, const Eigen::VectorXd& part,
                   Eigen::VectorXd& all);
@@ -45,12 +45,11 @@ class LoopIslands {
   /// The mechanism must outlive it. O(bodies + length of all loops)
   explicit LoopIslands(const Mechanism& mechanism);
 
-  /// J, Y, N and R at the pose that `loops` placed last; pivots count above this part of the
-  /// largest. Cost: a dense QR of each island.
+  /// J, Y, N and R at the last pose of `loops`; pivots above this part of the largest count. Cost:
+  /// a dense QR of each island.
   void factor(ScaledLoops& loops, double pivot = independent_pivot);
 
   const std::vector<LoopIsland>& all() const { return islands_; }
-  /// The island of a rate.
   const LoopIsland& of(int rate) const {
     return islands_[static_cast<std::size_t>(island_[static_cast<std::size_t>(rate)])];
   }

@@ -18,7 +18,7 @@ constexpr std::array<const char*, 8> parts{".force",  ".force_x",  ".force_y",  
                                            ".torque", ".torque_x", ".torque_y", ".torque_z"};
 constexpr auto width = static_cast<Index>(parts.size());
 
-/// +1: ground is the parent of the joint or loop, −1: the child, 0: neither.
+/// 1: ground is the parent of the joint or loop, −1: the child, 0: neither.
 template <class Specs>
 int on_ground(const Specs& specs, const std::string& name) {
   const auto found =
@@ -27,7 +27,7 @@ int on_ground(const Specs& specs, const std::string& name) {
   return found->parent == "ground" ? 1 : found->child == "ground" ? -1 : 0;
 }
 
-/// Sizes from components; NaN where a component is.
+/// Sizes from components, NaN included.
 void take_sizes(VectorXd& values) {
   for (Index at = 0; at < values.size(); at += 4) values[at] = values.segment<3>(at + 1).norm();
 }
@@ -55,7 +55,6 @@ MotionReactions::MotionReactions(const Mechanism& mechanism, int rate)
   loops_.rows.assign(loops_.rows.size(), true);
 }
 
-/// Components of all wrenches, sizes left out.
 VectorXd MotionReactions::transmitted(const VectorXd& q, const VectorXd& u, const VectorXd& udot,
                                       const VectorXd& lambda) {
   sweep_->move(0, q.data(), u.data(), udot.data(), lambda.data());
@@ -84,7 +83,7 @@ VectorXd MotionReactions::at(const VectorXd& q, const VectorXd& u, const VectorX
   (void)actuation_.efforts(loops_, islands_, 0, q, u, udot, tau);
   const VectorXd lambda = actuation_.multipliers(loops_, islands_, tau);
   VectorXd values = transmitted(q, u, udot, lambda);
-  // Wrenches are affine in λ: what multipliers without effect on the motion add, at rest.
+  // Wrenches are affine in λ: change by multipliers without effect on the motion.
   const VectorXd rest = VectorXd::Zero(u.size()), none = VectorXd::Zero(lambda.size());
   constexpr double rounding = 1e-9;
   for (const LoopIsland& island : islands_.all()) {

@@ -1,17 +1,17 @@
 #pragma once
 // The wrenches in joints and loops along a motion by one coordinate, named as in trajectory.csv.
-// With τ the effort of that coordinate c, which keeps up the motion (dae/effort/actuation.h),
+// With τ the effort of that coordinate c (dae/effort/actuation.h),
 //
 //   Φ_qᵀλ = e_c τ − (M u̇ + bias − Q),
 //
-// λ is found by the islands of loops, and from it the wrenches of reactions.h. What ground
+// the islands of loops give λ, and reactions.h the wrenches. The wrench through ground,
 // transmits,
 //
 //   F = Σ F_j,     N = Σ (N_j + x_j × F_j)      about the origin, over joints and loops on ground,
 //
 // is the negative of the shaking force and the shaking moment.
 // Source: Berkof, Lowen, A new method for completely force balancing simple linkages, J. Eng. Ind.
-// 91 (1969), for what those are.
+// 91 (1969).
 
 #include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/effort/actuation.h>
@@ -26,14 +26,15 @@ namespace momenta {
 
 class MotionReactions {
  public:
-  /// "O.force" and "O.torque", sizes, "O.force_x" … "O.torque_z" in ground axes, for each joint,
-  /// each loop between bodies, and "ground" [N, N m]. None of a Lagrangian.
+  /// For each joint, each loop between bodies and "ground": sizes "O.force" and "O.torque",
+  /// "O.force_x" … "O.torque_z" in ground axes [N, N m]. Empty for a Lagrangian.
   static std::vector<std::string> names(const Mechanism& mechanism);
 
-  /// `rate`: of the swept coordinate, place in u. The mechanism must outlive it.
+  /// `rate` of the swept coordinate. The mechanism must outlive it.
   MotionReactions(const Mechanism& mechanism, int rate);
-  /// In the order of names(); NaN where redundant loop equations leave a component open. Drives
-  /// stand. Cost: O(bodies), of each such equation too, and a dense QR of each island of loops
+  /// Values in the order of names(); NaN where redundant loop equations leave a component open.
+  /// Drives stand. Cost: O(bodies), also for each such equation, and a dense QR of each island of
+  /// loops
   Eigen::VectorXd at(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                      const Eigen::VectorXd& udot);
 
@@ -44,7 +45,7 @@ class MotionReactions {
   const Mechanism& mechanism_;
   ScaledLoops loops_;
   LoopIslands islands_;
-  std::optional<Contradiction> contradiction_;  ///< at the first pose
+  std::optional<Contradiction> contradiction_;  ///< the first pose's
   Actuation actuation_;
   std::unique_ptr<WrenchSweep> sweep_;
 };

@@ -10,7 +10,7 @@ using Eigen::VectorXd;
 
 /// r1, r2 at x = (q, u, u̇, λ): nv + m.
 struct AccelerationRows : RowPlaces {
-  double alpha = 0;  ///< α of r2 [1/s], β the other
+  double alpha = 0;  ///< α of r2 [1/s]; β: RowPlaces
   template <class E, class S>
   void operator()(E& e, const S* x, S* out) const {
     const S *u = x + nq, *udot = u + nv, *lambda = m > 0 ? udot + nv : nullptr;
@@ -62,7 +62,7 @@ Index AccelerationAdjoint::at_once() const {
 
 void AccelerationAdjoint::finish(VectorXd& by_parameters) {
   if (!numbers_) return;
-  // A sweep takes Q_θ of dampers times its direction of q: of D_c L*_θ that is none of S.
+  // Q_θ of dampers times its direction of q is in D_c L*_θ, but not in S.
   VectorXd all = VectorXd::Zero(numbers_->size());
   mixed_numbers_->finish(all);
   for (const Index i : numbers_->without_potential()) all[i] = 0;
@@ -72,7 +72,7 @@ void AccelerationAdjoint::finish(VectorXd& by_parameters) {
       by_parameters[static_cast<Index>(j)] += numbers.dot(all);
 }
 
-/// −S_θ of all numbers, without what forces without potential have but νᵀQ_θ.
+/// −S_θ of all numbers; of forces without potential νᵀQ_θ alone.
 void AccelerationAdjoint::add_numbers(const AdjointState& at) {
   const double *q = at.q.data(), *u = at.p.data(), *udot = at.slope.data(),
                *lambda = at.sigma.data();

@@ -15,17 +15,17 @@
 //   S = D_c D_(0,ν,μ) L* − D_(ν,0,0) L* − νᵀQ + 2α μᵀΦ̇ + β² μᵀΦ
 //
 // so that S_q, S_u, S_θ are second derivatives of P = L*_u, R = L*_q, L*_θ (mixed_rates.h), one
-// derivative more than those of the form on momenta: there u and σ are stationary, and
-// f_y is made of the second derivatives of H by itself (stage_adjoint.h). Forces without potential
-// stand apart: Q_qᵀν, Q_uᵀν (transposed_forces.h). K is solved as (7) is, with p = w_u: O(bodies).
+// derivative more than on momenta, where u and σ are stationary (stage_adjoint.h). Forces without
+// potential stand apart: Q_qᵀν, Q_uᵀν (transposed_forces.h). K is solved as (7) is, with p = w_u:
+// O(bodies).
 //
-// Of all numbers of bodies, joints, loops and springs at once (number_slopes.h): L*_θ is of degree
+// All numbers of bodies, joints, loops and springs go at once (number_slopes.h): L*_θ is of degree
 // two in (u, σ), so
 //
 //   D_c D_(0,ν,μ) L*_θ = ( D_c L*_θ(q, u + sν, sμ) − D_c L*_θ(q, u − sν, −sμ) ) / 2s
 //
-// where nothing is prescribed; else, and of other θ, from the rows of mechanisms with neighbouring
-// θ. Corrections after steps: correction_adjoint.h.
+// where nothing is prescribed; else, and for other θ, the rows of mechanisms with neighbouring θ
+// give S_θ. Corrections after steps: correction_adjoint.h.
 //
 // Derivation: docs/theory/gradients.md, section 8. Compare Haug, Ehle, Int. J. Numer. Methods Eng.
 // 18 (1982), and Bestle, Eberhard, Mech. Struct. Mach. 20 (1992), who integrate adjoint systems of
@@ -45,9 +45,9 @@ class AccelerationAdjoint final : public FormAdjoint {
   AccelerationAdjoint(const Mechanism& mechanism, const OdeForm& form,
                       const std::vector<OtherParameter>& others);
 
-  /// Cost: one solution of (7), three evaluations of rows in dual numbers, or of driven mechanisms
-  /// one in series; three sweeps for all numbers of tables; six plain evaluations of rows for each
-  /// other parameter.
+  /// Cost: one solution of (7); three evaluations of rows in dual numbers, or one in series if
+  /// driven; three sweeps for all numbers of tables; six plain evaluations of rows for each other
+  /// θ.
   bool rates(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
              Eigen::VectorXd& by_parameters) override;
   bool gauge(const AdjointState& at, Eigen::VectorXd& lambda,
@@ -74,10 +74,10 @@ class AccelerationAdjoint final : public FormAdjoint {
   TransposedForces forces_;
   MixedRates mixed_;
   CorrectionAdjoint corrections_;
-  std::unique_ptr<NumberSlopes> numbers_;        ///< null: no θ is taken so
-  std::unique_ptr<NumberSlopes> mixed_numbers_;  ///< of D_c D_(0,ν,μ) L*_θ
+  std::unique_ptr<NumberSlopes> numbers_;        ///< null: no θ goes by numbers
+  std::unique_ptr<NumberSlopes> mixed_numbers_;  ///< slopes of D_c D_(0,ν,μ) L*_θ
   bool placed_ = false;                          ///< some θ changes places
-  bool any_rows_ = false;                        ///< some θ is taken from rows of other mechanisms
+  bool any_rows_ = false;                        ///< rows of other mechanisms give some θ
   Eigen::VectorXd nu_, mu_, by_q_, by_u_, shifted_, sigma_, x_, weights_;
 };
 

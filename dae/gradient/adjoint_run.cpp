@@ -62,8 +62,8 @@ bool AdjointRun::end(double t, const double* y) {
   return true;
 }
 
-/// λ behind what the form does after a step to λ before it, where the stages led to y, and the form
-/// from there to `behind`; null: not known.
+/// λ before the form's change after a step: the stages led to y, the form from there to `behind`
+/// (null: not known).
 bool AdjointRun::after_step(double t, const VectorXd& y, const double* behind) {
   const Index n = y.size() / 2;
   const auto corrected = [&] {
@@ -84,12 +84,12 @@ bool AdjointRun::after_step(double t, const VectorXd& y, const double* behind) {
   AdjointState at{t, y_.head(n), y.tail(n), Map<const VectorXd>(form_.rates().data(), n),
                   Map<const VectorXd>(form_.multipliers().data(),
                                       static_cast<Index>(form_.multipliers().size()))};
-  if (form_.gauge().kind == Gauge::Kind::flip) at.sigma = -at.sigma;  // the form has turned it
+  if (form_.gauge().kind == Gauge::Kind::flip) at.sigma = -at.sigma;  // the form has turned σ
   return (adjoint_.gauge(at, lambda_, by_parameters_) && corrected()) ||
          fail_at(t, dependent_loops);
 }
 
-/// The stages of a step and their slopes, from its start; f of the first was taken at `first`.
+/// The stages of a step and their slopes anew, from its start; f of the first at `first`.
 bool AdjointRun::stages_again(const RecordedRun::Step& step, const double* start,
                               const double* first) {
   const Map<const VectorXd> y(start, form_.size());
@@ -126,7 +126,7 @@ bool AdjointRun::times_slopes(std::size_t stage) {
 
 bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* behind) {
   const RecordedRun::Step& step = run.steps()[number];
-  // Before a correction that does not count as a change, if it is kept.
+  // The state before a correction that is no change, if kept.
   const bool is_end = tableau_.first_is_end && form_.has_after_step() && number > 0 &&
                       !run.steps()[number - 1].altered && run.has_stages(number - 1);
   const double* first = is_end ? run.reached(number - 1) : run.start(number);

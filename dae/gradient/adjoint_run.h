@@ -5,13 +5,13 @@
 //   w_i = h b_i λ' + h Σ_{j>i} a_ji m_j,  m_i = f_yᵀ w_i,
 //   λ = λ' + Σ m_i,  dJ/dθ += Σ f_θᵀ w_i                                                      (6)
 //
-// with stages from the last to the first, as the run has kept them, or computed once more from the
-// state in which the step began; what was done after the step comes first. Where the first stage is
-// the last of the step before, taken ahead of a correction of y, its m_1 goes there. With J = ∫ g
-// dt by the stages, h b_i g_u joins the part of q in w_i, since dq̇ = du, and h b_i g_q the product.
-// It is the derivative of the very steps: dJ/dθ = λ(0)ᵀ dy(0)/dθ + Σ. Source: Hager, Runge-Kutta
-// methods in optimal control and the transformed adjoint system, Numer. Math. 87 (2000); Griewank,
-// Walther, Evaluating Derivatives.
+// with stages from the last to the first, kept by the run or computed again from the start of the
+// step; changes after the step come first. Where the first stage is the last of the step before,
+// taken ahead of a correction of y, its m_1 goes there. With J = ∫ g dt by the stages, h b_i g_u
+// joins the part of q in w_i, since dq̇ = du, and h b_i g_q the product. This is the derivative of
+// the very steps: dJ/dθ = λ(0)ᵀ dy(0)/dθ + Σ. Source: Hager, Runge-Kutta methods in optimal control
+// and the transformed adjoint system, Numer. Math. 87 (2000); Griewank, Walther, Evaluating
+// Derivatives.
 
 #include <momenta/dae/gradient/form_adjoint.h>
 #include <momenta/dae/gradient/functional_slopes.h>
@@ -24,8 +24,8 @@ namespace momenta {
 
 class AdjointRun {
  public:
-  /// Of a run of this form by this method, whose functional is g at its end or, `integral`, over
-  /// it. All must outlive it.
+  /// A run of this form by this method with the functional g at the end or, `integral`, over it.
+  /// All must outlive it.
   AdjointRun(OdeForm& form, FormAdjoint& adjoint, FunctionalSlopes& g, bool integral,
              const std::string& method, Eigen::Index parameters);
 
@@ -38,8 +38,8 @@ class AdjointRun {
   /// Products with f_yᵀ so far.
   long products() const { return products_; }
 
-  /// Goes back from (t, y), the end; `going(t)` after each step, false ends it. False where there
-  /// are no derivatives: failure().
+  /// Goes back from the end (t, y); `going(t)` after each step, false ends it. False without
+  /// derivatives: failure().
   bool back(const RecordedRun& run, double t, const double* y,
             const std::function<bool(double)>& going);
   const std::string& failure() const { return failure_; }
@@ -62,10 +62,10 @@ class AdjointRun {
   long products_ = 0;
   std::string failure_;
   Eigen::VectorXd lambda_, by_parameters_, y_, w_, product_, by_q_, by_u_, by_theta_;
-  Eigen::VectorXd ahead_;     ///< m_1 of the step behind, where it is of the end of this one
+  Eigen::VectorXd ahead_;     ///< m_1 of the step behind, if it belongs to the end of this one
   Eigen::VectorXd u_behind_;  ///< u where the step behind begins; empty: not known
   Eigen::MatrixXd k_, m_;     ///< size of y × stages
-  std::vector<AdjointState> stages_;  ///< of the step under way
+  std::vector<AdjointState> stages_;  ///< stages of the step under way
 };
 
 }  // namespace momenta

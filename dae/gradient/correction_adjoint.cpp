@@ -68,7 +68,7 @@ bool CorrectionAdjoint::positions(double t, const VectorXd& q, bool repeated,
                                   const Numbers& numbers, VectorXd& lambda,
                                   VectorXd& by_parameters) {
   if (!repeated) return position(t, q, numbers, lambda, by_parameters);
-  // As the form does (dae/form/projected.cpp), then back over what it did.
+  // As the form does (dae/form/projected.cpp), then back.
   VectorXd at = q;
   double before = std::numeric_limits<double>::infinity();
   std::size_t passes = 0;
@@ -115,7 +115,7 @@ bool CorrectionAdjoint::velocities(double t, const VectorXd& q, const VectorXd& 
                                    VectorXd& by_parameters) {
   const Index n = rows_.nv;
   if (!system_.place(t, q) || !system_.solve(lambda.tail(n), a_, b_)) return false;
-  // v − u solves K (v − u, ν) = (0, −Φ̇(u)): the same matrix.
+  // The same matrix: K (v − u, ν) = (0, −Φ̇(u)).
   VectorXd& v = delta_;
   if (!system_.nearest(u, v, nu_)) return false;
   e_->place(t, q.data());

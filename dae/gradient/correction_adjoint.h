@@ -7,8 +7,8 @@
 //   velocities   u' = v, K (v, ν) = (M u, −Φ_t) at q';     K (a, b) = (λ_u, 0),
 //                λ_q + D_(a,0) L*_q(q', u, 0) − D_(a,b) L*_q(q', v, ν),   M a in the place of λ_u
 //
-// Of numbers that are taken at once there is the same with L*_θ and Φ_θ; of other θ, −(a, b) times
-// the derivatives of the rows.
+// Numbers taken at once have the same with L*_θ and Φ_θ; other θ, −(a, b) times the derivatives of
+// the rows.
 
 #include <momenta/dae/gradient/metric_system.h>
 #include <momenta/dae/gradient/momentum_rows.h>
@@ -24,21 +24,20 @@ class CorrectionAdjoint {
   CorrectionAdjoint(const Mechanism& mechanism, const std::vector<OtherParameter>& others,
                     const TransposedForces& forces);
 
-  /// Where θ of numbers are added; null: none is. `placed`: some change places.
+  /// Slopes by numbers are added here; null: none. `placed`: some θ changes places.
   struct Numbers {
     NumberSlopes* of = nullptr;
     bool placed = false;
   };
-  /// λ (of q, then p or u) behind the correction of q at t [s] to λ before it; `repeated`: until
-  /// consistent, as the form `projected` does. False where the matrix is singular. Of each
-  /// correction two solutions of K and one evaluation of rows in dual numbers.
+  /// λ (of q, then p or u) before the correction of q at t [s], from λ behind it; `repeated`: until
+  /// consistent, as in the form `projected`. False where the matrix is singular. Each correction
+  /// costs two solutions of K and one evaluation of rows in dual numbers.
   bool positions(double t, const Eigen::VectorXd& q, bool repeated, const Numbers& numbers,
                  Eigen::VectorXd& lambda, Eigen::VectorXd& by_parameters);
-  /// λ behind that of u to λ before it, at the corrected q. Two solutions, two evaluations.
+  /// The same for the correction of u, at the corrected q. Two solutions, two evaluations.
   bool velocities(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                   const Numbers& numbers, Eigen::VectorXd& lambda, Eigen::VectorXd& by_parameters);
 
-  /// K, for who needs it beside.
   MetricSystem& system() { return system_; }
 
  private:

@@ -13,7 +13,7 @@ namespace momenta {
 namespace {
 
 constexpr int most_unknowns =
-    1000;  ///< nv + m: a dense matrix where rows are redundant, and at the start
+    1000;  ///< nv + m: the matrix is dense at the start and with redundant rows
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void expect_smooth_motion(const Scene& scene) {
 
 namespace {
 
-/// What a formula has corners or jumps by, one of its words; empty: none.
+/// Word or function of a formula with corners or jumps; empty: none.
 std::string_view corner_of(const Scene& scene, const std::string& law) {
   for (const std::string_view word : {"if(", "floor(", "sign(", "abs(", "min(", "max("})
     if (law.find(word) != std::string::npos) return word;

@@ -1,6 +1,6 @@
 #pragma once
-// What has a gradient, in words: forms, methods and sizes that have one, mechanisms that have an
-// adjoint, and what of a scene is not smooth.
+// Forms, methods and sizes that have a gradient, mechanisms that have an adjoint, and what of a
+// scene is not smooth, in words.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/study/run_result.h>
@@ -10,20 +10,19 @@
 
 namespace momenta {
 
-/// @throws std::invalid_argument, one sentence, for a form, a method or a size that has no gradient
+/// @throws std::invalid_argument, one sentence, for a form, method or size without gradient
 void expect_differentiable(const RunSettings& settings, const Mechanism& mechanism);
 
-/// @throws SceneError for a scene whose runs are no motion that is smooth in its numbers: bearings
-/// that rub by their reactions, rigid stops
+/// @throws SceneError for motions that are not smooth in the scene's numbers: bearings that rub by
+/// their reactions, rigid stops
 void expect_smooth_motion(const Scene& scene);
 
-/// Whether the scene has corners that a motion may pass: stops, dead bands, friction, whose slope
-/// turns within a small rate, laws of steps and tables, whose f̈ turns, and formulas with functions
-/// that have some.
+/// Whether a motion may pass corners: stops, dead bands, friction (its slope turns within a small
+/// rate), laws of steps and tables (f̈ turns), formulas with such functions.
 bool has_corners(const Scene& scene);
 
-/// What of the scene, and of the functional's function by this name, is not smooth everywhere: a
-/// sentence each. Empty `of_functional`: none.
+/// A sentence for each part of the scene, and for the functional's function of this name (empty:
+/// none), that is not smooth everywhere.
 std::vector<std::string> corners(const Scene& scene, const std::string& of_functional);
 
 /// Why a run has no adjoint, one sentence; empty: it has. `along`: derivatives along the run are

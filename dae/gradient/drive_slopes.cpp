@@ -8,7 +8,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// with(place among the numbers, its derivative by θ at t) for f and ḟ of each drive.
+/// Calls with(place among the numbers, its derivative by θ at t) for f and ḟ of each drive.
 template <class With>
 void each_number(const NumberSlopes& numbers, const OtherParameter& other, double t, With&& with) {
   for (std::size_t d = 0; d < other.drives; ++d) {

@@ -14,7 +14,6 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The scalar of rows.
 template <class S>
 using Of = std::remove_cvref_t<S>;
 
@@ -62,8 +61,8 @@ MatrixXd FormTangents::joined(const MatrixXd& a, const MatrixXd& b, const Matrix
   return all;
 }
 
-/// du, dσ, dṗ by the sweeps, dṗ without what it has of θ itself. False where they do not carry the
-/// state: where rows fade, here or in the first stage, the matrix says whether they may.
+/// du, dσ, dṗ by the sweeps, dṗ without ∂ṗ/∂θ. False where they do not carry the state: where rows
+/// fade, here or in the first stage, the matrix decides.
 bool FormTangents::sweep(double t, const VectorXd& q, const double* p, const MatrixXd& dq,
                          const MatrixXd& dp) {
   if (!swept_) return false;
@@ -77,8 +76,8 @@ bool FormTangents::sweep(double t, const VectorXd& q, const double* p, const Mat
   return swept_->along(t, q.data(), p, dq, along_p_, besides_, du_, dpdot_, dsigma_);
 }
 
-/// du, dσ of (7) at u_, σ_, and dṗ where the sweeps find them; `of_rates`: explicit_ with the rows
-/// of (8) below.
+/// du, dσ of (7) at u_, σ_, and dṗ where the sweeps find it; `of_rates`: explicit_ with rows of (8)
+/// below.
 bool FormTangents::momentum(double t, const VectorXd& q, const double* p, const MatrixXd& dq,
                             const MatrixXd& dp, bool of_rates) {
   MomentumAndRateRows with_rates{{RowPlaces(mechanism_)}};
@@ -200,7 +199,7 @@ bool FormTangents::correct_position(double t, VectorXd& q, MatrixXd& dq) {
     rows.t = t;
     MatrixXd d = derivatives_(rows, momenta::joined(q, found, VectorXd(0)),
                               joined(dq, MatrixXd::Zero(nv_ + m_, k), MatrixXd(0, k)), nv_ + m_);
-    if (tables_) {  // M δ + Φ_qᵀν, Φ_q δ + Φ, of the motion that no drive makes
+    if (tables_) {  // M δ + Φ_qᵀν, Φ_q δ + Φ, without drives
       tables_->at(t, q, found.head(nv_), found.data() + nv_, {0, 1});
       d.topRows(nv_) += tables_->r1;
       d.bottomRows(m_) += tables_->r2;
@@ -282,10 +281,10 @@ bool FormTangents::after_step(double t, const double* before, const double* afte
   normalise(q, dq);
   if (momenta_ && m_ > 0 &&
       (gauge_.kind == Gauge::Kind::reset || gauge_.kind == Gauge::Kind::flip)) {
-    const double kept = gauge_.kind == Gauge::Kind::flip ? -1 : 0;  // of σ
+    const double kept = gauge_.kind == Gauge::Kind::flip ? -1 : 0;  // factor of σ
     u_ = Map<const VectorXd>(form_.rates().data(), nv_);
     sigma_ = Map<const VectorXd>(form_.multipliers().data(), m_);
-    if (kept != 0) sigma_ *= kept;  // the form has turned it
+    if (kept != 0) sigma_ *= kept;  // turned by the form
     q = Map<const VectorXd>(after, nq_);
     if (!momentum(t, q, before + nq_, dq, dx, false)) return false;
     const auto rows = [&](auto& e, const auto* x, auto* out) {

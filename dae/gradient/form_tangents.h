@@ -1,25 +1,25 @@
 #pragma once
-// The derivative of a form's right-hand side and of what it does after steps, along directions
-// Y_j = dy/dθ_j: with it a run of an explicit method carries dy/dθ along, stage by stage, and what
-// comes out is the derivative of the run itself, its errors included.
+// The derivative of a form's right-hand side and of its changes after steps, along directions Y_j =
+// dy/dθ_j: a run of an explicit method carries dy/dθ along, stage by stage, and the result is the
+// derivative of the run itself, errors included.
 //
 // On momenta, y = (q, p): (u, σ) solve F = 0 at every stage,
 //
-//   F = ( M u + Φ_qᵀσ − p,  Φ_q u + Φ_t + βΦ ),      ṗ = R(q, u, σ)                         (7),
-//   (8) ( M    Φ_qᵀ ) ( du )     ( dp )   dF at constant u, σ ( Φ_q  0    ) ( dσ )  =  ( 0  ) − (
-//   of M u + Φ_qᵀσ, Φ_q u + Φ_t + βΦ ),   dṗ = dR
+//   F = ( M u + Φ_qᵀσ − p,  Φ_q u + Φ_t + βΦ ),      ṗ = R(q, u, σ)                     (7), (8)
+//
+//   ( M    Φ_qᵀ ) ( du )   ( dp )
+//   ( Φ_q  0    ) ( dσ ) = ( 0  ) − ( dF at constant u, σ, p ),      dṗ = dR
 //
 // On accelerations, y = (q, u), the same with (u̇, λ) and
 //
 //   F = ( M u̇ + b − Q + Φ_qᵀλ,  Φ̈ + 2αΦ̇ + β²Φ )                                                (3)
 //
-// dF and dR are those of row_derivatives.h. On momenta, where the sweeps carry the mechanism, no
-// matrix and no rows are needed (swept_tangent.h): with ∂F/∂θ = (r1, r2),
-// ∂R/∂θ = r3 at constant q, u, σ,
+// dF and dR are those of row_derivatives.h. On momenta, sweeps that carry the mechanism need
+// neither matrix nor rows (swept_tangent.h): with ∂F/∂θ = (r1, r2), ∂R/∂θ = r3 at constant q, u, σ,
 //
 //   Y' = f_y (dq, dp − r1) with r2 in the second row, + (0, r3)
 //
-// and of θ that change numbers of the tables alone r1, r2, r3 are those of table_tangents.h.
+// and for θ that change numbers of the tables alone r1, r2, r3 are those of table_tangents.h.
 // After a step, in the order of the forms,
 //
 //   position   q ← q + H δ,  M δ + Φ_qᵀν = 0,  Φ_q δ = −Φ       differentiated as F is
@@ -39,8 +39,7 @@ namespace momenta {
 
 class FormTangents {
  public:
-  /// @pre the form is one of those that can be differentiated: see differentiable_forms(). All must
-  /// outlive it.
+  /// @pre the form is in differentiable_forms(). All must outlive it.
   FormTangents(const Mechanism& mechanism, const OdeForm& form,
                const std::vector<OtherParameter>& others);
 
@@ -79,16 +78,16 @@ class FormTangents {
   StageMatrix matrix_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<SweptTangent> swept_;    ///< null: by rows
-  std::unique_ptr<TableTangents> tables_;  ///< null: no θ is taken so
+  std::unique_ptr<TableTangents> tables_;  ///< null: by rows
   Eigen::Index nq_, nv_, m_;
   bool momenta_, projects_, repeats_;
   Gauge gauge_;
-  double leak_, beta_, alpha_;  ///< β of (7); of (3) β² and 2α: feedback_
+  double leak_, beta_, alpha_;  ///< β of (7); β² and 2α of (3): feedback_
   Eigen::VectorXd u_, sigma_;
   Eigen::MatrixXd du_, dsigma_;
   Eigen::MatrixXd explicit_;  ///< ∂/∂θ of the rows of (7) and, where asked for, (8)
   Eigen::MatrixXd dq_, dx_, dpdot_, along_p_, besides_;
-  int faded_ = -1;  ///< rows, in the first stage
+  int faded_ = -1;  ///< redundant rows in the first stage
 };
 
 /// "momentum", …: forms whose runs can be differentiated.

@@ -12,12 +12,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What a name of the formula stands for.
 struct Functional::Name {
   enum class Of { time, coordinate, rate, marker, energy, parameter };
   Of of = Of::time;
-  int place = 0;  ///< in q, u, marker columns, or among the variables; −1: a parameter that stays
-  double value = 0;  ///< of a parameter
+  int place = 0;     ///< place in q, u, marker columns or variables; −1: a constant parameter
+  double value = 0;  ///< parameter's value
 };
 
 Functional::Functional(const std::string& formula, const Mechanism& mechanism,

@@ -1,12 +1,12 @@
 #pragma once
-// A quantity of a motion, g(t, q, u; θ), by a formula of the names that trajectory.csv has:
-// coordinates, rates, positions and velocities of markers, `energy`; and t and parameters. Its
-// derivative along directions,
+// A quantity of a motion, g(t, q, u; θ), as a formula of t, parameters and names of trajectory.csv:
+// coordinates, rates, positions and velocities of markers, `energy`. Its derivative along
+// directions,
 //
 //   dg = Σ ∂g/∂z dz + ∂g/∂θ,
 //
 // with ∂g/∂z by tapes (core/expression/gradient.cpp), dz of coordinates and rates as they are, of
-// markers by dual numbers, of the energy T + V by differences of sixth order along the direction.
+// markers by dual numbers, of the energy T + V by differences of sixth order.
 
 #include <momenta/core/expression/expression.h>
 #include <momenta/dae/gradient/row_derivatives.h>
@@ -21,17 +21,17 @@ namespace momenta {
 
 class Functional {
  public:
-  /// Which must outlive it. @throws std::invalid_argument: one sentence on the formula
+  /// The mechanism must outlive it. @throws std::invalid_argument: one sentence on the formula
   Functional(const std::string& formula, const Mechanism& mechanism,
              const std::vector<RunVariable>& variables, const std::vector<OtherParameter>& others);
   ~Functional();
 
   /// g at t [s], q (nq), u (nv), and dg (variables) along dq, du (rows × variables). O(bodies) a
-  /// variable; no more than the formula where it takes neither markers nor the energy
+  /// variable with markers or the energy, else the formula alone
   double operator()(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                     const Eigen::MatrixXd& dq, const Eigen::MatrixXd& du, Eigen::VectorXd& dg);
 
-  /// A function in it that has corners or jumps, by its name; empty: none.
+  /// A function in the formula with corners or jumps; empty: none.
   std::string corner() const { return corner_; }
 
  private:
@@ -45,7 +45,7 @@ class Functional {
 
   const Mechanism& mechanism_;
   const std::vector<OtherParameter>& others_;
-  std::vector<Name> names_;  ///< of the variables of the formula
+  std::vector<Name> names_;  ///< variables of the formula
   std::unique_ptr<Expression> formula_;
   std::string corner_;
   std::vector<int> used_;

@@ -21,7 +21,7 @@ class FunctionalSlopes {
 
  private:
   Eigen::Index n_;
-  std::vector<OtherParameter> none_;  ///< of directions of the state
+  std::vector<OtherParameter> none_;  ///< directions of the state
   Eigen::MatrixXd along_q_, along_u_, still_;
   Functional of_state_, of_parameters_;
   Eigen::VectorXd slopes_;

@@ -30,10 +30,10 @@ using Eigen::VectorXd;
 
 /// A variable has no effect where dJ/dθ times its size is below this part of J.
 constexpr double effect = 1e-10;
-/// Least absolute tolerance of tangents: where their rates jump, at corners, no step has a smaller.
+/// Least absolute tolerance of tangents: at corners their rates jump.
 constexpr double least_of_tangents = 1e-10;
 
-/// Of tangents in the norm of the local error, compared with y.
+/// Scale of tangents beside y in the norm of the local error.
 double tangents_scale_at(double atol) {
   return std::max(1.0, least_of_tangents / std::max(atol, 1e-300));
 }
@@ -44,7 +44,7 @@ std::unique_ptr<FormAdjoint> form_adjoint(const Mechanism& mechanism, const OdeF
   return std::make_unique<AccelerationAdjoint>(mechanism, form, others);
 }
 
-/// A gradient under way: what forward and adjoint share.
+/// Parts that forward and adjoint share.
 struct Asked {
   const GradientRequest& request;
   const Mechanism& mechanism;
@@ -87,14 +87,14 @@ struct Asked {
     for (std::string& remark : tangents.broken) result.remarks.push_back(std::move(remark));
     return std::move(tangents.of_state);
   }
-  /// What the start has that is taken at once: rows are those of y(0), or λᵀ.
+  /// Adds the part of dy(0)/dθ taken at once; rows are those of y(0), or λᵀ.
   void add_start(const MatrixXd& slopes, MatrixXd& rows) {
     for (std::size_t j = 0; j < others.size(); ++j)
       if (others[j].starts_at_once)
         rows.col(static_cast<Eigen::Index>(j)) +=
             start_adjoint->by(result.variables[j], others[j], slopes);
   }
-  /// The first jump of a force in a step, as of law_jumps.h; empty: none.
+  /// The first jump of a force in a step (law_jumps.h); empty: none.
   std::string jump_in_step(double t0, double t1, const Interpolant& between,
                            std::vector<double>& inside) {
     if (!jumps.any()) return {};
@@ -182,8 +182,7 @@ void Asked::forward() {
       return lost.empty() && !ended;
     };
   IntegrationResult run;
-  // Where rates of tangents jump by so much that no step has their tolerance, they get a larger
-  // one.
+  // Rates of tangents may jump so far that no step meets the tolerance: it grows.
   for (int i = 0; i < 3 && !run.done; ++i, tangents_scale *= 1e3) {
     if (i > 0 && (!turns || ended || !lost.empty() || !system->lost().empty() ||
                   request.max_cpu_seconds > 0))
@@ -218,7 +217,7 @@ void Asked::adjoint() {
   const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
-  // Steps follow one tangent, and the integral.
+  // Steps follow one tangent and the integral.
   const std::vector<OtherParameter> no_parameter(1);
   std::optional<FormTangents> tangents;
   std::optional<Functional> integrand;
@@ -326,8 +325,8 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  // The σ that a leak begins with is λ/κ, and that of accelerations: differenced. On accelerations
-  // second derivatives by all numbers have no part in time.
+  // σ at the start with a leak (λ/κ), and on accelerations, is differenced. On accelerations second
+  // derivatives by all numbers have no part in time.
   std::optional<StartAdjoint> start_adjoint;
   TakenAtOnce at_once;
   const bool leaks = form.gauge().kind == Gauge::Kind::leak;
@@ -344,18 +343,18 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
              std::any_of(request.outputs.begin(), request.outputs.end(),
                          [&](const std::string& of) { return of.find(name) != std::string::npos; });
     };
-    // On accelerations forward tangents are of rows alone.
+    // On accelerations forward tangents take rows alone.
     at_once.makes_all = (!result.adjoint && !form.momentum_like()) || asks("energy");
     for (const Column& marker : mechanism.marker_columns())
       at_once.makes_places |= asks(marker.name);
   }
   const std::vector<OtherParameter> others =
       other_parameters(scene, mechanism, result.variables, at_once);
-  std::vector<Scene> near;  // where numbers decide on moments of jumps
+  std::vector<Scene> near;  // scenes near θ, where numbers decide on moments of jumps
   for (const RunVariable& v : result.variables)
     if (v.kind == RunVariable::Kind::parameter && has_corners(mechanism.scene())) try {
         near.push_back(scene.scene({{v.name, v.value + 1e-9 * v.size}}));
-      } catch (const SceneError&) {  // no neighbour, no formula that differs
+      } catch (const SceneError&) {  // no neighbour: no formula differs
       }
   LawJumps jumps(mechanism, near, !form.momentum_like());
   Asked asked{
@@ -388,9 +387,8 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
   return result;
 }
 
-/// Where derivatives turn at corners and steps do not follow them: the largest derivatives, as many
-/// as a forward mode takes, against those of half the step, or, of a sweep back, against tangents
-/// that steps follow.
+/// Checks the largest derivatives, as many as a forward mode takes, at corners that steps do not
+/// follow: against those of half the step or, after a sweep back, tangents that steps follow.
 void check_corners(const SceneText& scene, const GradientRequest& request, GradientResult& result) {
   constexpr double told = 1e-4, refused = 1e-2;
   std::vector<Eigen::Index> order(result.variables.size());
@@ -413,7 +411,7 @@ void check_corners(const SceneText& scene, const GradientRequest& request, Gradi
   if (request.progress) other.progress = [&](double) { return request.progress(result.end_time); };
   bool ignored = false;
   const Eigen::VectorXd expected = by_one_run(scene, other, ignored).gradient;
-  // What is small beside the largest effect is known to a part of that.
+  // Small derivatives are compared with a part of the largest effect.
   const double least = 1e-3 * effect_of(order.front());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const RunVariable& variable = result.variables[static_cast<std::size_t>(order[k])];

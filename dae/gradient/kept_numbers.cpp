@@ -33,7 +33,7 @@ void KeptNumbers::begin_block(std::size_t count) {
   blocks_.reserve(blocks_.size() + 1);
   blocks_.push_back({static_cast<double*>(::operator new(all, alignment)), alignment});
 #ifdef MADV_HUGEPAGE
-  if (huge) ::madvise(blocks_.back().first, all, MADV_HUGEPAGE);  // a wish: it may be refused
+  if (huge) ::madvise(blocks_.back().first, all, MADV_HUGEPAGE);  // harmless if refused
 #endif
   size_ = all / bytes;
   used_ = 0;

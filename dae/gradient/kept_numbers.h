@@ -1,7 +1,7 @@
 #pragma once
-// Rows of numbers in the order in which they come, each in one piece that stays where it is. Blocks
-// double up to 32 MB; those of whole huge pages ask for such: a run of seconds keeps tens of
-// megabytes, and in pages of 4 kB the first touch of each took longer than what is written there.
+// Rows of numbers in order of arrival, each in one piece that stays in place. Blocks double up to
+// 32 MB and ask for huge pages: a run of seconds keeps tens of megabytes, and the first touch of a
+// page of 4 kB takes longer than writing it.
 
 #include <cstddef>
 #include <new>
@@ -15,7 +15,7 @@ class KeptNumbers {
   KeptNumbers(const KeptNumbers&) = delete;
   KeptNumbers& operator=(const KeptNumbers&) = delete;
   ~KeptNumbers();
-  /// Room for so many numbers, not set. Throws std::bad_alloc.
+  /// Room for `count` numbers, not set. @throws std::bad_alloc
   double* next(std::size_t count);
 
  private:
@@ -26,7 +26,7 @@ class KeptNumbers {
     std::align_val_t alignment;
   };
   std::vector<Block> blocks_;
-  std::size_t size_ = 0, used_ = 0;  ///< of the last block, numbers
+  std::size_t size_ = 0, used_ = 0;  ///< numbers in the last block
 };
 
 }  // namespace momenta

@@ -1,7 +1,7 @@
 #pragma once
-// The derivatives of ∂T/∂q, at constant q, and of p = M u along rates: D_v T_q and M v at (q, u),
-// with (8) in dual numbers of one direction and neither forces nor σ. What the transposed
-// derivative of p = M u asks for.
+// The derivatives of ∂T/∂q, at constant q, and of p = M u along rates, for transposed derivatives
+// of p = M u: D_v T_q and M v at (q, u), by (8) in dual numbers of one direction, without forces
+// and σ.
 
 #include <momenta/dae/mechanism.h>
 

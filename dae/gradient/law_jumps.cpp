@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 
 constexpr int pieces = 8, halvings = 24;
 
-/// Whether a formula may jump at a moment that the motion decides on, by variables of which
-/// `moves`, or a number that differs in one of the others; or, where `rates` count, its
-/// derivatives, at places of points too.
+/// Whether a formula may jump at a moment that depends on the motion (variables of_motion) or on a
+/// number that differs in one of the others; with `rates`, its derivatives too; with `points_move`,
+/// places of points.
 template <class Moves>
 bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Expression>& others,
               bool rates = false, bool points_move = false) {
@@ -41,8 +41,8 @@ bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Ex
     moves[i] = of(in.a) || of(in.b) || of(in.c) || (in.operation == O::spline && points_move);
     if (in.operation == O::choice || in.operation == O::sign || in.operation == O::floor)
       jumps |= of(in.a);
-    // x / |x|, x (x²)^(−1/2) and the like jump where they divide by zero; where they never do,
-    // in_step() finds none.
+    // x / |x|, x (x²)^(−1/2) and the like jump where they divide by zero; if never, in_step() finds
+    // no jump.
     if (in.operation == O::divide) jumps |= of(in.b);
     if (in.operation == O::whole_power && in.number < 0) jumps |= of(in.a);
     if (in.operation == O::power) {
@@ -64,7 +64,7 @@ bool may_jump(const Formula& formula, const std::vector<Expression>& others, boo
   return may_jump(formula.expression, of_motion, others, rates, points_move);
 }
 
-/// The same of a force in a Lagrangian, whose parameters are variables.
+/// The same for a force in a Lagrangian, whose parameters are variables.
 bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scene>& others) {
   AnyNames names;
   const auto of_motion = [&](int i) {
@@ -78,12 +78,12 @@ bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scen
   };
   try {
     return may_jump(Expression(law, names), of_motion, {});
-  } catch (const std::logic_error&) {  // it calls functions by points
+  } catch (const std::logic_error&) {  // the formula calls functions by points
     return false;
   }
 }
 
-/// Events do not know functions by points.
+/// Functions by points, which events do not know.
 bool calls_points(const Formula& formula) {
   const std::vector<formula::Instruction>& tape = formula.expression.tape();
   return std::any_of(tape.begin(), tape.end(), [](const formula::Instruction& in) {
@@ -194,7 +194,7 @@ std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
         from = half;
       }
     }
-    // Of a continuous force it is 2⁻²⁴ of the first, or that of its steepest place.
+    // A continuous force keeps 2⁻²⁴ of the first change, or that of its steepest place.
     if (std::abs(high[k] - low[k]) > 0.01 * first)
       return "at t = " + compact(to, 6) + " s " + laws_[static_cast<std::size_t>(k)] +
              " jumps from " + compact(low[k], 3) + " to " + compact(high[k], 3) +

@@ -1,7 +1,7 @@
 #pragma once
-// Forces without potential in the transposed derivative, where each acts along one coordinate, sum
-// of coordinates or length s of its own and depends on it alone, Q = −F(s, ṡ) s_q: dampers,
-// friction and stops of joints, springs and coordinate springs. With w = F_ṡ,
+// Forces without potential in the transposed derivative, each along one coordinate, sum of
+// coordinates or length s and dependent on it alone, Q = −F(s, ṡ) s_q: dampers, friction and stops
+// of joints, springs and coordinate springs. With w = F_ṡ,
 //
 //   Q_u b = −w s_q (s_q·b)                                    is its own transpose
 //   (Q_qᵀ − Q_q) b = −w ((s_q·b) s_qq u − (uᵀ s_qq b) s_q)    terms in F and F_s are symmetric
@@ -22,19 +22,19 @@ namespace momenta {
 class LineLosses {
  public:
   virtual ~LineLosses() = default;
-  /// Whether there are such forces.
+  /// Whether the mechanism has such forces.
   virtual bool any() const = 0;
   /// Whether at() asks for q and u.
   virtual bool at_state() const = 0;
-  /// At (q, u), nv each, empty without at_state(): by_u = Q_uᵀ b, skew = (Q_qᵀ − Q_q) b of b (nv
-  /// each). O(bodies)
+  /// by_u = Q_uᵀ b and skew = (Q_qᵀ − Q_q) b at (q, u), nv each, empty without at_state().
+  /// O(bodies)
   virtual void at(const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& b,
                   Eigen::VectorXd& skew, Eigen::VectorXd& by_u) = 0;
-  /// dQ = Q_u du (nv each) there. O(bodies)
+  /// dQ = Q_u du (nv each) at the last state. O(bodies)
   virtual void along_rates(const Eigen::VectorXd& du, Eigen::VectorXd& dQ) = 0;
 };
 
-/// Null where other forces have no potential: bushings, wrenches, formulas; or where drives or user
+/// Null where other forces have no potential (bushings, wrenches, formulas), or drives or user
 /// joints move sums or lengths with time. The mechanism has no quaternions.
 std::unique_ptr<LineLosses> make_line_losses(const Mechanism& mechanism);
 

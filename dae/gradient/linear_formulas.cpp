@@ -38,7 +38,7 @@ struct Token {
   }
 };
 
-/// The end of the name that begins here: 'left-knee'.q, J.q0.
+/// End of the name that begins here: 'left-knee'.q, J.q0.
 std::size_t end_of_name(std::string_view text, std::size_t at) {
   if (text[at] == '\'') {
     at = text.find('\'', at + 1);
@@ -49,7 +49,7 @@ std::size_t end_of_name(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// The number that begins here, (−2) with its brackets; its end.
+/// Number that begins here, as (−2) with its brackets, and its end.
 std::optional<std::pair<double, std::size_t>> number_at(std::string_view text, std::size_t at) {
   const bool in_brackets = text.substr(at).starts_with("(-");
   const std::size_t first = in_brackets ? at + 1 : at;
@@ -65,7 +65,7 @@ std::optional<std::pair<double, std::size_t>> number_at(std::string_view text, s
   return std::pair{number, behind + 1};
 }
 
-/// `numbers`: parameters that the formula has by their names.
+/// `numbers`: parameters in the formula by name.
 std::vector<Token> tokens_of(std::string_view text, std::span<const ParameterSpec> numbers) {
   std::vector<Token> all;
   bool apart = false;
@@ -90,7 +90,7 @@ std::vector<Token> tokens_of(std::string_view text, std::span<const ParameterSpe
   return all;
 }
 
-/// A number of the formula that θ changes.
+/// A number in the formula that θ changes.
 struct Changed {
   double value = 0, slope = 0;
 };
@@ -101,7 +101,7 @@ std::string joined(std::span<const Token> tokens) {
   return text;
 }
 
-/// The first of "n_", "n__", … that does not stand in a text.
+/// The first of "n_", "n__", … that is not in a text.
 std::string free_name(const std::string& text) {
   std::string name = "n_";
   while (text.find(name) != std::string::npos) name += "_";
@@ -112,7 +112,7 @@ class LinearFormula {
  public:
   LinearFormula(const Scene& own, double h) : own_(own), h_(h) {}
 
-  /// The texts of neighbours made linear; as they were where that cannot be.
+  /// Makes the texts of neighbours linear, where possible.
   void make(const std::string& own, std::vector<std::string*> near,
             std::span<const ParameterSpec> numbers,
             const std::vector<std::span<const ParameterSpec>>& near_numbers) const {
@@ -152,13 +152,13 @@ class LinearFormula {
     try {
       const std::vector<std::string> all = linear(joined(tokens), names, changed, calls);
       for (std::size_t k = 0; k < near.size(); ++k) *near[k] = all[k];
-    } catch (const std::logic_error&) {  // no formula, or numbers in it that are none
+    } catch (const std::logic_error&) {  // no formula, or names without a number
     }
   }
 
  private:
-  /// Calls of functions by points become names that begin with `name`; false where one is of what θ
-  /// changes.
+  /// Replaces calls of functions by points by names beginning with `name`; false where an argument
+  /// depends on θ.
   bool take_calls(std::vector<Token>& tokens, const std::vector<std::string>& changed,
                   const std::string& name, std::vector<std::string>& calls) const {
     for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
@@ -183,7 +183,7 @@ class LinearFormula {
     return true;
   }
 
-  /// f + k h Σ ∂f/∂n ∂n/∂θ, at each of the points.
+  /// f + k h Σ ∂f/∂n ∂n/∂θ, at each point.
   std::vector<std::string> linear(const std::string& text, std::vector<std::string> names,
                                   const std::vector<Changed>& changed,
                                   const std::vector<std::string>& calls) const {
@@ -220,7 +220,7 @@ class LinearFormula {
   double h_;
 };
 
-/// The law of a drive as a formula of t; empty: there is none.
+/// Law of a drive as a formula of t; empty: none.
 std::string law_of_time(const DriveSpec& drive) {
   const auto n = in_formula;
   if (drive.kind == "harmonic")
@@ -242,8 +242,8 @@ std::string law_of_time(const DriveSpec& drive) {
   return drive.kind == "formula" ? drive.law : "";
 }
 
-/// All formulas that a run evaluates, those of drives last, in one order for scenes that differ in
-/// numbers alone.
+/// All formulas of a run, those of drives last, in one order for scenes that differ in numbers
+/// alone.
 std::vector<std::string*> formulas_in(Scene& scene) {
   std::vector<std::string*> all;
   for (ForceSpec& force : scene.forces)

@@ -1,12 +1,12 @@
 #pragma once
-// Formulas of neighbouring scenes. A formula f(x; θ) that a run evaluates, of a force, a drive, a
-// loop, a Lagrangian, is known as a formula of θ too, so that its derivative is exact (core/
-// expression/gradient.cpp): in the scene of θ + d,
+// Formulas of neighbouring scenes. A formula f(x; θ) of a force, a drive, a loop or a Lagrangian is
+// a formula of θ too, with an exact derivative (core/expression/gradient.cpp): in the scene of θ +
+// d,
 //
 //   f(x; θ) + d ∂f/∂θ (x; θ)
 //
-// takes its place, whose differences have ∂f/∂θ to rounding however often f turns between θ and
-// θ + d, and wherever it has corners: of abs, max, if(…) that of the piece which x is on at θ.
+// takes its place. Differences then have ∂f/∂θ to rounding, however often f turns between θ and θ +
+// d. At corners of abs, max, if(…) the piece is that of x at θ.
 
 #include <momenta/core/expression/expression.h>
 #include <momenta/core/scene/scene.h>
@@ -20,10 +20,10 @@
 
 namespace momenta {
 
-/// Any name is a variable by its own name.
+/// Names for a parser: any name is a variable.
 class AnyNames final : public FormulaNames {
  public:
-  /// Variables are numbered in this order, others follow.
+  /// Known names are numbered in this order, others follow.
   explicit AnyNames(std::vector<std::string> known = {}) : names(std::move(known)) {
     for (std::size_t i = 0; i < names.size(); ++i) places_.emplace(names[i], static_cast<int>(i));
   }
@@ -39,9 +39,9 @@ class AnyNames final : public FormulaNames {
   std::unordered_map<std::string, int> places_;
 };
 
-/// Of scenes at θ + k h, in the order of sixth_order::points, `own` that of θ: all formulas in
-/// which they differ, laws of drives of every kind but tables among them. Those stay that call
-/// functions by points of what θ changes. O(text) for each
+/// Makes linear all formulas in which scenes at θ + k h differ, laws of drives but tables among
+/// them; order of sixth_order::points, `own` that of θ. Formulas that call functions by points of
+/// what θ changes stay. O(text) for each
 void make_formulas_linear(const Scene& own, double h, std::vector<Scene>& near);
 
 }  // namespace momenta

@@ -30,7 +30,7 @@ bool MetricSystem::place(double t, const VectorXd& q) {
   return !matrix_.singular();
 }
 
-/// u, σ of (7) with Φ̇ + βΦ = 0. False where it is left to the matrix.
+/// u, σ of (7) with Φ̇ + βΦ = 0. False where the matrix is needed.
 bool MetricSystem::by_recursion(const double* p, double beta, VectorXd& x, VectorXd& y) {
   x.resize(nv_);
   y.resize(m_);
@@ -42,7 +42,7 @@ bool MetricSystem::by_recursion(const double* p, double beta, VectorXd& x, Vecto
          solver_->pivots().faded == 0;
 }
 
-/// What is prescribed, p = 0.
+/// Prescribed part, p = 0.
 bool MetricSystem::still() {
   return by_recursion(none_.data(), 0, x_still_, y_still_);
 }

@@ -1,13 +1,13 @@
 #pragma once
-// The symmetric system of every correction after a step, and of the adjoint on accelerations,
+// The symmetric system of the corrections after a step, and of the adjoint on accelerations,
 //
 //   K (x, y) = (r, s),   K = ( M    Φ_qᵀ )
 //                            ( Φ_q  0    ),
 //
-// by what solves (7): with p = r it is (7) without prescribed motion, and with β = 1 that of a
-// correction of positions. The solution is affine in p, so that what is prescribed goes by a
-// difference with p = 0. O(bodies + m) by the sweeps that carry loops; where rows of Φ are
-// redundant, or no recursion takes a joint, by StageMatrix, and y is the shortest.
+// by the solvers of (7): with p = r it is (7) without prescribed motion, and with β = 1 that of a
+// correction of positions. The solution is affine in p: a difference with p = 0 removes the
+// prescribed part. O(bodies + m) by the sweeps that carry loops; where rows of Φ are redundant, or
+// no recursion takes a joint, by StageMatrix, with the shortest y.
 
 #include <momenta/dae/gradient/stage_matrix.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -19,9 +19,9 @@ class MetricSystem {
   /// The mechanism must outlive it.
   explicit MetricSystem(const Mechanism& mechanism);
 
-  /// By the matrix alone from now on.
+  /// The matrix alone from now on.
   void by_matrix() { recursive_ = false; }
-  /// Before solutions at (t, q). False where the matrix is singular.
+  /// Goes to (t, q). False where the matrix is singular.
   bool place(double t, const Eigen::VectorXd& q);
   // False where the matrix is singular; x of nv numbers, y of m:
   /// r as given (nv), s = 0.

@@ -79,7 +79,7 @@ void MixedRates::sweep(const At& x, const VectorXd& nu, const VectorXd& mu) {
   if (alpha_ != 0 || beta_ != 0) feed_back(loop_force_, force_rate_);
 }
 
-/// 2α Φ̇_qᵀμ + β² Φ_qᵀμ and 2α Φ_qᵀμ, of Φ_qᵀμ and its rate along the motion.
+/// Adds 2α Φ̇_qᵀμ + β² Φ_qᵀμ and 2α Φ_qᵀμ, from Φ_qᵀμ and its rate along the motion.
 void MixedRates::feed_back(const VectorXd& force, const VectorXd& rate) {
   by_q += 2 * alpha_ * rate + beta_ * beta_ * force;
   by_u += 2 * alpha_ * force;
@@ -116,7 +116,7 @@ void MixedRates::polarised(const At& x, const VectorXd& nu, const VectorXd& mu) 
       by_u[i] += half * (P.b[0] + R.a);
     }
   }
-  // At (u, 0): along (ν, 0, 0), and what μ has along the motion.
+  // At (u, 0): along (ν, 0, 0), and the rate of Φ_qᵀμ along the motion.
   for (Index i = 0; i < n; ++i) {
     Dual8 &q = x_[at(i)], &u = x_[at(n + i)];
     q = Dual8(x.q[i]);

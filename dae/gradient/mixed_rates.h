@@ -1,26 +1,26 @@
 #pragma once
-// What the transposed derivative of (3) takes of the augmented Lagrangian L* = T − V + σᵀΦ̇: second
-// derivatives, one along the motion. With P = L*_u = M u + Φ_qᵀσ, R = L*_q, both at σ = 0, and D_c
-// along the curve (q + u s, u + u̇ s, λ s, t + s),
+// The second derivatives of the augmented Lagrangian L* = T − V + σᵀΦ̇ in the transposed derivative
+// of (3), one of them along the motion. With P = L*_u = M u + Φ_qᵀσ, R = L*_q, both at σ = 0, and
+// D_c along the curve (q + u s, u + u̇ s, λ s, t + s),
 //
 //   by_q = D_c D_(0,ν,μ) R − D_(ν,0,0) R + 2α Φ̇_qᵀμ + β² Φ_qᵀμ
 //   by_u = D_c D_(0,ν,μ) P + D_(0,ν,μ) R − D_(ν,0,0) P + 2α Φ_qᵀμ
 //
-// are the gradients of S = νᵀr1 + μᵀr2 of acceleration_adjoint.h, directions those of (q, u, σ).
+// are the gradients of S = νᵀr1 + μᵀr2 of acceleration_adjoint.h, with directions of (q, u, σ).
 // Ways:
 //
 //   series     rows in power series along the curve with dual directions (0, ν, μ), (ν, 0, 0)
 //   polarised  P and R are of degree two in (u, σ) together, so that differences are exact,
 //                D_(0,ν,μ) R(q, u, 0) = ( R(q, u + sν, sμ) − R(q, u − sν, −sμ) ) / 2s,
 //              and rows in dual numbers with one direction, (u, u̇, λ), have D_c. Time is no direction
-//              there: only where nothing is prescribed. s brings sν to the size of u and of √u̇,
-//              what the forces at rest are.
+//              there: only where nothing is prescribed. s brings sν to the size of u and of √u̇
+//              (forces at rest).
 //
-//   swept      the same in four lanes of one sweep (levels/mixed_sweep.h), where nothing else acts
-//              than weights, forces of joints, and loops of points, axes and distances
+//   swept      the same in four lanes of one sweep (levels/mixed_sweep.h), where only weights,
+//              forces of joints, and loops of points, axes and distances act
 //
-// Polarised it takes 3 evaluations of rows in dual numbers, a fraction of the time of series, and
-// swept a fraction of that.
+// Polarised takes 3 evaluations of rows in dual numbers, a fraction of the time of series; swept a
+// fraction of that.
 
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/gradient/levels/mixed_sweep.h>
@@ -32,33 +32,32 @@ namespace momenta {
 
 class MixedRates {
  public:
-  /// `forces`: there are some without potential, which R has not, `at_points` such too, as
-  /// transposed_forces.h has them. The mechanism has neither quaternions nor nonholonomic rows, and
+  /// `forces`: some have no potential and are not in R; `at_points`: some of these act at points of
+  /// bodies (transposed_forces.h). The mechanism has neither quaternions nor nonholonomic rows, and
   /// must outlive it.
   MixedRates(const Mechanism& mechanism, double alpha, double beta, bool forces, bool at_points);
 
-  /// Where: t [s], q, u, u̇ (nv each), λ (m).
+  /// t [s], q, u, u̇ (nv each), λ (m).
   struct At {
     double t;
     const Eigen::VectorXd &q, &u, &udot, &lambda;
   };
-  /// by_q, by_u (nv) along ν (nv), μ (m), by the way that the mechanism takes. O(bodies + m)
+  /// by_q, by_u (nv) along ν (nv), μ (m), by the fitting way. O(bodies + m)
   void operator()(const At& at, const Eigen::VectorXd& nu, const Eigen::VectorXd& mu);
   /// The same by series.
   void by_series(const At& at, const Eigen::VectorXd& nu, const Eigen::VectorXd& mu);
   /// @pre nothing is prescribed
   void polarised(const At& at, const Eigen::VectorXd& nu, const Eigen::VectorXd& mu);
 
-  /// Whether the third way is taken.
   bool swept() const { return swept_ != nullptr; }
-  /// s: sν and sμ are to u, u̇ what a polarised difference takes.
+  /// s that brings sν and sμ to the size of u, u̇ in a polarised difference.
   static double reach(const At& at, const Eigen::VectorXd& nu);
 
-  // Of the last call.
+  // Results of the last call.
   Eigen::VectorXd by_q, by_u;
 
  private:
-  /// The sweep and what it is made of, which stays where it is.
+  /// The sweep with its model, which stays in place.
   struct Swept {
     virtual ~Swept() = default;
     std::unique_ptr<MixedSweep> sweep;
@@ -75,8 +74,8 @@ class MixedRates {
   LagrangianSlopes rows_;
   double alpha_, beta_;
   bool driven_;
-  std::unique_ptr<Swept> swept_;             ///< null: it does not fit
-  std::unique_ptr<Evaluation<Dual8>> dual_;  ///< these two made when first asked for
+  std::unique_ptr<Swept> swept_;             ///< null: no sweep fits
+  std::unique_ptr<Evaluation<Dual8>> dual_;  ///< this and series_ are made on demand
   std::unique_ptr<Evaluation<Jet>> series_;
   std::vector<Dual8> x_, out_, mu_, force_;
   Eigen::VectorXd force_rate_, loop_force_;

@@ -1,10 +1,10 @@
 #pragma once
-// The rows of the momentum form that derivatives are taken of, for every scalar, at x = (q, u, σ):
+// The rows of the momentum form for derivatives, for every scalar, at x = (q, u, σ):
 //
 //   r1 = M u + Φ_qᵀσ,  r2 = Φ_q u + Φ_t + βΦ,  r3 = ṗ                                     (7), (8)
 //
-// those of a position correction, at x = (q, δ, ν): M δ + Φ_qᵀν, Φ_q δ + Φ; and the derivatives of
-// L* = T − V + σᵀΦ̇ by u and by q, without the forces that have no potential.
+// and of a position correction, at x = (q, δ, ν): M δ + Φ_qᵀν, Φ_q δ + Φ; and the derivatives of L*
+// = T − V + σᵀΦ̇ by u and q, without forces that have no potential.
 
 #include <momenta/dae/mechanism.h>
 
@@ -14,7 +14,7 @@
 
 namespace momenta {
 
-/// One above the other.
+/// a, b and c one above the other.
 inline Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                               const Eigen::VectorXd& c) {
   Eigen::VectorXd all(a.size() + b.size() + c.size());
@@ -22,7 +22,7 @@ inline Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b
   return all;
 }
 
-/// Where the parts of x are, and what of the form is held.
+/// Places of the parts of x; constants of the form.
 struct RowPlaces {
   explicit RowPlaces(const Mechanism& mechanism)
       : nq(mechanism.nq()), nv(mechanism.nv()), m(mechanism.m()) {}
@@ -69,8 +69,8 @@ struct MomentumAndRateRows : MomentumRows {
 
 /// (L*_u, L*_q), 2 nv: M u + Φ_qᵀσ, and ṗ without the forces that have no potential.
 struct LagrangianSlopes : RowPlaces {
-  bool forces = false;     ///< there are such
-  bool at_points = false;  ///< at points of bodies too: then all forces but weights are left out
+  bool forces = false;     ///< some have no potential
+  bool at_points = false;  ///< some act at points of bodies: all but weights are left out
   template <class E, class S>
   void operator()(E& e, const S* x, S* out) const {
     e.place(t, x);
@@ -84,7 +84,7 @@ struct LagrangianSlopes : RowPlaces {
   }
 };
 
-/// nv + m. Prescribed motion has no part in a correction.
+/// Rows of a correction, nv + m, without prescribed motion.
 struct CorrectionRows : RowPlaces {
   template <class E, class S>
   void operator()(E& e, const S* x, S* out) const {

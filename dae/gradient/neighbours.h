@@ -1,7 +1,7 @@
 #pragma once
-// Mechanisms of neighbouring values of one number θ of a scene, θ + k h of sixth_order.h, at widths
-// h that become narrower where that is asked for: what rows, energies and places have of θ at one
-// state is a difference of what these have there.
+// Mechanisms of neighbouring values θ + k h of one number of a scene (sixth_order.h). Widths h
+// narrow on demand. Slopes by θ of rows, energies and places at a state are differences of their
+// values in these mechanisms.
 
 #include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/scene/drive.h>
@@ -21,41 +21,41 @@ class Neighbours {
  public:
   /// Scenes at θ + k h, in the order of sixth_order::points. @throws SceneError
   using Scenes = std::function<std::vector<Scene>(double h)>;
-  /// Of θ, of the mechanism `own`, which must outlive it; h: of the widest.
+  /// Neighbours by θ of the mechanism `own`, which must outlive it; h: the widest.
   Neighbours(RunVariable variable, double h, Scenes scenes, const Mechanism& own,
              MechanismOptions options);
 
-  double h() const { return h_; }  ///< of the widest width that there is
-  /// The scenes of the i-th width that is the widest at which there are some. @throws SceneError
+  double h() const { return h_; }  ///< the widest that exists
+  /// Scenes of the widest width that exists. @throws SceneError
   const std::vector<Scene>& scenes();
-  /// Those of this width, until its mechanisms are made.
+  /// Scenes of this width, until its mechanisms are made.
   const std::vector<Scene>& scenes(double h) { return width(h).scenes; }
-  /// Makes the mechanisms of the widest width at which there are some. @throws SceneError where
-  /// there is none, or it has other coordinates or equations
+  /// Makes the mechanisms of the widest width that exists. @throws SceneError where there is none,
+  /// or one has other coordinates or equations
   void make();
   const Mechanism& mechanism(std::size_t point, double h) {
     return point == sixth_order::middle ? own_ : *at(h).mechanisms[point];
   }
 
-  /// ∂/∂θ of f(evaluation, numbers), which fills numbers of this size at one state. Counts how far
-  /// the formulas that check it are off. Cost: seven plain evaluations, six more of each further
-  /// width that the state asks for
+  /// ∂/∂θ of f(evaluation, numbers), which fills numbers of this size at a state. Sums up the
+  /// differences of the formulas of sixth_order.h. Cost: seven plain evaluations, six more for each
+  /// further width that the state asks for
   template <class F>
   const Eigen::VectorXd& slope(Eigen::Index size, F&& f) {
     return slope(size, f, 0);
   }
-  /// The same of rows of equations, of which those of corrections vanish but for rounding: they are
-  /// looked at beside the largest of all that were taken.
+  /// Slope of rows of equations. Rows of corrections vanish but for rounding: slopes are compared
+  /// with the largest so far.
   template <class F>
   const Eigen::VectorXd& slope_of_rows(Eigen::Index size, F&& f) {
     slope(size, f, largest_);
     if (size > 0) largest_ = std::max(largest_, slope_.cwiseAbs().maxCoeff());
     return slope_;
   }
-  /// The same of f, ḟ of a law of the tree's drives at t.
+  /// Slopes of f, ḟ of a law of the tree's drives at t.
   const Eigen::VectorXd& law_slope(std::size_t drive, double t);
 
-  /// Digits to which the formulas agree, of all that was taken; 16: nothing was.
+  /// Digits to which the formulas agree so far; 16: no slopes yet.
   double digits() const;
 
  private:
@@ -89,10 +89,10 @@ class Neighbours {
   const Mechanism& own_;
   MechanismOptions options_;
   std::array<Width, sixth_order::widths> widths_;
-  std::unique_ptr<Evaluation<double>> here_;  ///< of `own_`
+  std::unique_ptr<Evaluation<double>> here_;  ///< evaluation of `own_`
   Eigen::VectorXd plain_, slope_;
   double apart_ = 0, size_ = 0;  ///< sums
-  double largest_ = 0;           ///< of rows
+  double largest_ = 0;           ///< slope of rows
 };
 
 }  // namespace momenta

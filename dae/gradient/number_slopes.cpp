@@ -106,8 +106,8 @@ class NumberSlopesOf final : public NumberSlopes {
   }
 
   std::vector<Index> without_potential() const override {
-    // Of a joint stiffness, rest, damping, torque, friction and rotor stand last; of a spring
-    // stiffness, rest, damping and, between points, the offset.
+    // The last numbers of a joint are stiffness, rest, damping, torque, friction and rotor; of a
+    // spring stiffness, rest, damping and, between points, the offset.
     std::vector<Index> all;
     const auto put = [&all](Index first, Index stride, std::size_t count, Index from_end) {
       for (Index k = 1; k <= static_cast<Index>(count); ++k)
@@ -247,10 +247,10 @@ class NumberSlopesOf final : public NumberSlopes {
           all.ranges.push_back({first, body.nv});
     return all;
   }
-  /// All that is counted in the frames of the bodies that a joint joins: these may move with it.
+  /// All numbers in frames of the bodies that a joint joins: these may move with it.
   Share of_frames(const std::string& joint) const {
     const auto& bodies = mechanism_.tree().bodies;
-    std::vector<bool> moves(bodies.size() + 1, false);  // the ground last: it stays
+    std::vector<bool> moves(bodies.size() + 1, false);  // the ground, last, stays
     const auto at = [&](int body) {
       return body < 0 ? bodies.size() : static_cast<std::size_t>(body);
     };
@@ -281,7 +281,7 @@ class NumberSlopesOf final : public NumberSlopes {
       return false;
     });
   }
-  /// Every body at zero, in its parent's frame, frames of the model.
+  /// Poses of the model's frames in their parents' at zero coordinates.
   static std::vector<Isometry3d> placed(const Tree& tree, const Model<Space>& model) {
     Isometry3d ground = Isometry3d::Identity();
     ground.linear() = model.basis.transpose();

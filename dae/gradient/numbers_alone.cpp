@@ -19,7 +19,7 @@ bool has_word(const std::string& formula, const std::string& name) {
   return false;
 }
 
-/// What of the scene is a formula while it runs: there a parameter is no number of the tables.
+/// Formulas during a run: there a parameter is no number of the tables.
 std::vector<std::string> formulas_of(const Scene& scene, bool with_drives) {
   std::vector<std::string> all;
   for (const ForceSpec& force : scene.forces) {
@@ -33,13 +33,12 @@ std::vector<std::string> formulas_of(const Scene& scene, bool with_drives) {
   return all;
 }
 
-/// Gives `to` the members of `from`.
 template <class Spec, class... Member>
 void take(Spec& to, const Spec& from, Member Spec::*... members) {
   ((to.*members = from.*members), ...);
 }
 
-/// Of a force along one length, linear in it or not.
+/// Whether a force acts along one length; linear in it, unless `known` is all.
 bool is_spring(const ForceSpec& force, Forces known) {
   return (force.kind == "spring-damper" || force.kind == "coordinate-spring") &&
          force.law.empty() && (known == Forces::all || (force.dead_band == 0 && !has_stops(force)));
@@ -50,7 +49,7 @@ bool has_no_formulas(const ForceSpec& wrench) {
          std::all_of(wrench.torque_law.begin(), wrench.torque_law.end(), empty);
 }
 
-/// What `other` differs in that the slopes by numbers know without the places of joints and loops.
+/// Copies what slopes by numbers know without places of joints and loops.
 void take_inertias_and_forces(Scene& other, const Scene& own, Forces known) {
   other.gravity = own.gravity;
   other.parameters = own.parameters;
@@ -74,7 +73,7 @@ void take_inertias_and_forces(Scene& other, const Scene& own, Forces known) {
   }
 }
 
-/// And with them: places of joints, loops, springs and markers, guesses of the start; figures and
+/// Copies places of joints, loops, springs and markers and guesses of the start; figures and
 /// defaults of a run change no motion.
 void take_places(Scene& other, const Scene& own, Forces known) {
   for (std::size_t i = 0; i < own.joints.size(); ++i)
@@ -93,8 +92,8 @@ void take_places(Scene& other, const Scene& own, Forces known) {
   other.run = own.run;
 }
 
-/// And the laws of drives, which read no parameter while they run; so do the functions by points
-/// that they call.
+/// Copies laws of drives, which read no parameter during a run, and the functions by points in
+/// them.
 void take_drives(Scene& other, const Scene& own) {
   for (std::size_t i = 0; i < own.drives.size(); ++i)
     take(other.drives[i], own.drives[i], &DriveSpec::kind, &DriveSpec::coefficients,

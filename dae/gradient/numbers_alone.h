@@ -1,6 +1,6 @@
 #pragma once
-// What a scene differs in from a given one: whether in nothing but numbers that number_slopes.h has
-// derivatives by.
+// Whether a scene differs from a given one in nothing but numbers by which number_slopes.h has
+// derivatives.
 
 #include <momenta/core/scene/scene.h>
 
@@ -9,23 +9,20 @@
 
 namespace momenta {
 
-/// Kinds of differences.
 enum class Change {
-  inertias_and_forces,  ///< of bodies, gravity, springs, dampers, wrenches, bushings: the assembly
-                        ///< knows none of them
-  places,               ///< of joints, loops and springs, with or without these
-  drives,               ///< of joints, their laws, with or without these
+  inertias_and_forces,  ///< bodies, gravity, springs, dampers, wrenches, bushings: no part of the
+                        ///< assembly
+  places,               ///< joints, loops and springs, perhaps also the above
+  drives,               ///< laws of drives of joints, perhaps also the above
   more                  ///< anything else
 };
 
-/// Which forces: springs and dampers linear in one length, or dead bands, stops, wrenches and
-/// bushings too.
+/// Springs and dampers linear in one length, or also dead bands, stops, wrenches and bushings.
 enum class Forces { plain, all };
 
 class NumbersAlone {
  public:
-  /// `known`: a difference beyond is more, and so is one in other forces. The scene must outlive
-  /// it.
+  /// Differences beyond `known` or in other forces are `more`. The scene must outlive it.
   NumbersAlone(const Scene& scene, Change known, Forces forces);
   /// O(text of the scene)
   Change of(Scene other) const;

@@ -12,8 +12,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The derivative of the numbers that scenes near θ have; empty where the formulas that check it
-/// are off: at θ they jump, as where a frame is chosen anew.
+/// Slopes of the numbers of scenes near θ; empty where the formulas of sixth_order.h differ:
+/// numbers jump at θ, as where a frame is chosen anew.
 VectorXd numbers_by(const NumberSlopes& slopes, const Scene& own, Neighbours& near) {
   double of = 0;
   std::vector<VectorXd> made;
@@ -35,10 +35,9 @@ VectorXd numbers_by(const NumberSlopes& slopes, const Scene& own, Neighbours& ne
   return known ? slope.by : VectorXd();
 }
 
-/// Numbers of bodies', joints', loops' and springs' own, of as many of these as share nothing by
-/// six readings of the scene in which all of them have moved. Formulas know parameters alone, so
-/// that such a number is in no other body. What a reading refuses, and what changes more than it
-/// is known to, is left to be taken alone.
+/// Derivatives by numbers of bodies, joints, loops and springs: six readings of the scene with all
+/// moved that share nothing. Formulas know parameters alone: such a number is in no other body. A
+/// number that a reading refuses, or that changes more than its share, is taken alone.
 class OwnNumbers {
  public:
   OwnNumbers(const SceneText& scene, const NumberSlopes& slopes, const NumbersAlone& same,
@@ -64,7 +63,7 @@ class OwnNumbers {
   }
 
  private:
-  /// Whether a share has nothing in common with these parts, to which it is added then.
+  /// Whether a share has no part in common with `parts`; then adds it to them.
   static bool is_apart(const NumberSlopes::Share& share, std::set<Index>& parts) {
     if (share.ranges.empty()) return false;
     for (const auto& range : share.ranges)
@@ -96,7 +95,7 @@ class OwnNumbers {
         for (Index i = 0; i < n.size(); ++i)
           if (!moves[static_cast<std::size_t>(i)] && n[i] != own_[i]) return false;
       }
-    } catch (const std::exception&) {  // which of them it is, its own reading tells
+    } catch (const std::exception&) {  // each number's own reading tells which
       return false;
     }
     const VectorXd none = VectorXd::Zero(own_.size());
@@ -112,7 +111,7 @@ class OwnNumbers {
           if (i < sixth_order::fourth.size())
             fourth.segment(range.first, range.count) += sixth_order::fourth[i] / all[j].h * its;
         }
-      // Where it jumps it is taken alone, and the rest with it.
+      // A number that jumps is taken alone, and the rest with it.
       if (!((taken[a] - fourth).cwiseAbs().maxCoeff() <= 1e-6 * taken[a].cwiseAbs().maxCoeff()))
         return false;
     }

@@ -6,7 +6,7 @@
 namespace momenta {
 namespace {
 
-/// States of all steps together: 4 GB, with those of stages 1 GB.
+/// States of all steps: 4 GB, with those of stages 1 GB.
 constexpr std::size_t most_numbers = std::size_t{1} << 29, most_with_stages = most_numbers / 4;
 
 }  // namespace
@@ -36,7 +36,7 @@ bool RecordedRun::keep(double t0, double t1) {
   return true;
 }
 
-/// u of all stages, of which the last was so many evaluations ago.
+/// Keeps u of all stages, the last `ago` evaluations ago.
 void RecordedRun::keep_rates(std::size_t ago) {
   if (first_rates_.empty()) return;
   const std::size_t count = c_.size() * first_rates_.size();
@@ -49,8 +49,8 @@ void RecordedRun::keep_rates(std::size_t ago) {
   }
 }
 
-/// u at the start of a step, where it is known before f is evaluated there: after a reset, which
-/// does not change it, or where f at the end of the step before is kept.
+/// u at the start of a step where known before f is evaluated: after a reset, which does not change
+/// it, or where f at the end of the step before is kept.
 void RecordedRun::find_first_rates() {
   first_rates_.clear();
   if (reset_) {

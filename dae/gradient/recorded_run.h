@@ -1,12 +1,11 @@
 #pragma once
-// A form's run whose steps are kept, for a sweep back over them: where each began, how long it was,
-// and, as long as there is memory for them, the states of its stages, which need not be computed
-// again then, with u of (7) there where it is asked for. Its steps follow one tangent too (see
-// tangent_system.h): what a sweep back carries is as fast.
-// Memory: a state a stage, up to 1 GB, from there on a state a step, up to 4 GB.
+// A form's run whose steps are kept for a sweep back: start and length of each and, while memory
+// lasts, the states of its stages, with u of (7) on demand. Steps follow one tangent too
+// (tangent_system.h): the λ of a sweep back is as fast. Memory: a state a stage, up to 1 GB, from
+// there on a state a step, up to 4 GB.
 //
-// Stages are told from other evaluations by their times: of a step they are the last s − 1 in a row
-// at t0 + c_i h. Where none are, trials of singular poses lie between.
+// Stages are told from other evaluations by their times: the last s − 1 of a step, in a row at t0 +
+// c_i h. Where none are, trials of singular poses lie between.
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/gradient/kept_numbers.h>
@@ -20,16 +19,15 @@ namespace momenta {
 
 class RecordedRun final : public OdeSystem {
  public:
-  /// A step over [t0, t1], h = t1 - t0 as the method took it [s]; whether what the form did after
-  /// it changes f.
+  /// A step over [t0, t1], h as the method took it [s]; `altered`: the form's change after it
+  /// changes f.
   struct Step {
     double t0 = 0, t1 = 0, h = 0;
     bool altered = false;
   };
 
-  /// `system`: what is integrated, the form alone or with tangents after its state. `fixed_step`: 0
-  /// with error control. `end`: of the run [s]. `c`: the method's abscissas. `with_rates`: u of
-  /// stages is kept with them.
+  /// `system`: the form alone or with tangents after its state. `fixed_step`: 0 with error control.
+  /// `end` of the run [s]. `c`: the method's abscissas. `with_rates`: keeps u of stages.
   RecordedRun(OdeForm& form, OdeSystem& system, double fixed_step, double end,
               std::vector<double> c, bool with_rates = false)
       : form_(form),
@@ -41,27 +39,24 @@ class RecordedRun final : public OdeSystem {
         last_(c_.size()) {}
 
   const std::vector<Step>& steps() const { return steps_; }
-  /// The state in which step i began.
   const double* start(std::size_t i) const { return kept_[i].states; }
-  /// Whether the states of its stages are kept too.
+  /// Whether states of stages are kept too.
   bool has_stages(std::size_t i) const { return kept_[i].has_stages; }
   /// Stage j of step i, 0 its start. @pre has_stages(i)
   const double* stage(std::size_t i, std::size_t j) const { return start(i) + j * width(); }
-  /// The state to which the stages of step i led, before what the form does after it. @pre
-  /// has_stages(i), has_after_step()
+  /// State to which the stages led, before the form's change. @pre has_stages(i), has_after_step()
   const double* reached(std::size_t i) const { return stage(i, c_.size()); }
   /// u of stage j of step i (nv); null: not kept.
   const double* rates(std::size_t i, std::size_t j) const {
     return kept_[i].rates ? kept_[i].rates + j * form_.rates().size() : nullptr;
   }
-  /// To be told of each step taken, before the next begins. False where no more can be kept.
+  /// Keeps a step just taken; false where memory is at its limit.
   bool keep(double t0, double t1);
-  /// When stages came near to a singular pose.
   const std::vector<double>& singular_passages() {
     passages_.end_step();
     return passages_.times();
   }
-  /// Whether loop equations depend on others, in all stages.
+  /// Whether rows of Φ are redundant in all stages.
   bool redundant() const { return faded_ > 0; }
   /// Why the last trial of a step had no derivatives, one sentence; empty: it had.
   const std::string& lost() const { return lost_; }
@@ -101,8 +96,8 @@ class RecordedRun final : public OdeSystem {
   bool lost_at(double t, const char* why);
   void find_first_rates();
   void keep_rates(std::size_t ago);
-  /// How many evaluations ago the last stage of the step just taken was; −1 where its stages are
-  /// not the last evaluations, or the last but for f at its end.
+  /// Evaluations since the step's last stage; −1 where its stages are not the last evaluations, or
+  /// the last but for f at its end.
   int stages_ago(const Step& step) const;
 
   OdeForm& form_;
@@ -110,7 +105,7 @@ class RecordedRun final : public OdeSystem {
   double fixed_step_, end_;
   std::vector<double> c_;
   bool with_rates_;
-  /// The last evaluations, as many as the method has stages, and where the next one goes.
+  /// The last evaluations, one for each stage of the method.
   struct Evaluated {
     double t = 0;
     std::vector<double> y, u;
@@ -119,16 +114,17 @@ class RecordedRun final : public OdeSystem {
     return last_[(next_ + 2 * last_.size() - 1 - ago) % last_.size()];
   }
   std::vector<Evaluated> last_;
-  std::size_t next_ = 0, evaluated_ = 0;  ///< of this step
+  std::size_t next_ = 0, evaluated_ = 0;  ///< evaluated_: this step's
   bool corrected_stages_ = false;
-  int looking_ = 0;  ///< depth
-  int faded_ = -1;   ///< rows that are redundant in the first stage, and so in all
+  int looking_ = 0;  ///< depth of trials
+  int faded_ = -1;   ///< redundant rows in the first stage, and so in all
   SingularPassages passages_;
   std::string lost_;
   std::vector<Step> steps_;
-  std::vector<double> start_, first_rates_;  ///< of this step; rates empty: f is yet to come
-  bool reset_ = false;                       ///< f at its start is the form's own
-  /// Of a step: its start, stages, what they led to; u of its stages, null: not kept.
+  std::vector<double> start_, first_rates_;  ///< this step's; first_rates_ empty: f is not
+                                             ///< evaluated yet
+  bool reset_ = false;                       ///< f at the start is the form's own
+  /// A step: start, stages, their end; u of stages, null: not kept.
   struct Kept {
     double* states;
     bool has_stages;
@@ -136,7 +132,7 @@ class RecordedRun final : public OdeSystem {
   };
   std::vector<Kept> kept_;
   KeptNumbers numbers_;
-  std::size_t count_ = 0;  ///< of numbers kept
+  std::size_t count_ = 0;  ///< numbers kept
 };
 
 }  // namespace momenta

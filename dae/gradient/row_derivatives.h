@@ -3,9 +3,8 @@
 //
 //   dr_j = (∂r/∂x) dx_j + ∂r/∂θ_j,
 //
-// the first exact, by dual numbers, eight directions at a time; the second from evaluations of
-// mechanisms with other θ_j at the same x (neighbours.h), in which formulas are linear in θ_j
-// (linear_formulas.h).
+// the first exact, by dual numbers, eight directions at a time; the second from mechanisms with
+// other θ_j at the same x (neighbours.h), whose formulas are linear in θ_j (linear_formulas.h).
 
 #include <momenta/dae/gradient/neighbours.h>
 #include <momenta/dae/mechanism.h>
@@ -17,21 +16,20 @@
 
 namespace momenta {
 
-/// What a run knows of θ_j beside its own mechanism.
+/// A run's knowledge about θ_j beside its own mechanism.
 struct OtherParameter {
-  double h = 0;  ///< of differences, the widest
-  /// Derivatives by θ_j of the numbers of number_slopes.h, where θ_j changes these alone; else
-  /// empty.
+  double h = 0;  ///< widest
+  /// Slopes by θ_j of the numbers of number_slopes.h, where θ_j changes these alone; else empty.
   Eigen::VectorXd numbers;
   bool of_places = false;  ///< places of joints, loops or springs are among these, or `laws`
-  /// Of the tree, where θ_j changes laws of some; numbers of drives are left out of `numbers`.
+  /// Drives of the tree, if θ_j changes laws; their numbers are not in `numbers`.
   std::size_t drives = 0;
-  Eigen::VectorXd at_start;     ///< the same where the start alone is made of them, rows are not
-  bool starts_at_once = false;  ///< what the start has of θ_j is that of start_adjoint.h
-  /// Null: nothing depends on θ_j but where the motion starts, or numbers that are taken at once.
+  Eigen::VectorXd at_start;     ///< like `numbers`, where only the start is made of them
+  bool starts_at_once = false;  ///< start_adjoint.h has the start's slope by θ_j
+  /// Null: only the start, or numbers taken at once, depend on θ_j.
   std::unique_ptr<Neighbours> near;
-  bool by_mechanisms = false;  ///< those of `near` are made; else it has laws alone
-  /// Whether rows are differences.
+  bool by_mechanisms = false;  ///< `near` has mechanisms; else laws alone
+  /// Whether rows are differenced.
   bool by_rows() const { return by_mechanisms && numbers.size() == 0; }
 };
 
@@ -44,7 +42,7 @@ const Eigen::VectorXd& slope_of_rows(Neighbours& near, const Rows& rows, const E
   });
 }
 
-/// sum_j += weightsᵀ ∂r/∂θ_j of those that are not taken by numbers.
+/// sum_j += weightsᵀ ∂r/∂θ_j of the θ_j with by_rows().
 template <class Rows>
 void add_by_parameters(const std::vector<OtherParameter>& others, const Rows& rows,
                        const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
@@ -62,9 +60,9 @@ class RowDerivatives {
   RowDerivatives(const Mechanism& mechanism, const std::vector<OtherParameter>& others)
       : others_(others), dual_(mechanism.evaluation<Dual8>()), elsewhere_(others.size()) {}
 
-  /// By these parameters ∂r/∂θ stays zero: it is added by somebody else.
+  /// Leaves ∂r/∂θ of these zero: others add it.
   void leave_out(const std::vector<bool>& parameters) { elsewhere_ = parameters; }
-  /// Whether some parameter is taken by evaluations of other mechanisms.
+  /// Whether other mechanisms are evaluated for some parameter.
   bool any_parameters() const {
     for (std::size_t j = 0; j < others_.size(); ++j)
       if (!elsewhere_[j] && others_[j].by_mechanisms) return true;
@@ -73,7 +71,7 @@ class RowDerivatives {
 
   Eigen::Index directions() const { return static_cast<Eigen::Index>(others_.size()); }
 
-  /// (∂r/∂x) dx, size × directions, of `rows(e, x, out)`, rows of any scalar, `size` of them; dx:
+  /// (∂r/∂x) dx, size × directions, of the rows that `rows(e, x, out)` fills for any scalar; dx:
   /// x's size × directions. Cost: an evaluation in dual numbers for eight directions.
   template <class Rows>
   Eigen::MatrixXd along(const Rows& rows, const Eigen::VectorXd& x, const Eigen::MatrixXd& dx,
@@ -109,7 +107,7 @@ class RowDerivatives {
     return d;
   }
 
-  /// Both.
+  /// (∂r/∂x) dx + ∂r/∂θ.
   template <class Rows>
   Eigen::MatrixXd operator()(const Rows& rows, const Eigen::VectorXd& x, const Eigen::MatrixXd& dx,
                              Eigen::Index size) {

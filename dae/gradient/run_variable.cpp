@@ -10,7 +10,6 @@
 namespace momenta {
 namespace {
 
-/// Of a number of the text.
 RunVariable of_scene(const std::string& place, double value) {
   return {RunVariable::Kind::parameter, place, "", -1, value, value != 0 ? std::abs(value) : 1};
 }
@@ -42,9 +41,9 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
                             rates = mechanism.rate_columns();
   const Tree& tree = mechanism.tree();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (coordinates[i].unit == "1") continue;  // of a quaternion
+    if (coordinates[i].unit == "1") continue;  // part of a quaternion
     const auto at = static_cast<Eigen::Index>(i);
-    // A length is a part of those of the scene; q and u differ by quaternions alone.
+    // Lengths are in lengths of the scene; q and u differ by quaternions alone.
     const double length = coordinates[i].unit == "m" && tree.nq == tree.nv ? units.rates[at] : 1;
     all.push_back({Kind::position, coordinates[i].name, coordinates[i].unit, static_cast<int>(i),
                    tree.q0[at], std::max(length, 0.1 * std::abs(tree.q0[at]))});
@@ -60,7 +59,7 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
   for (const RunVariable& v : all) known.push_back(v.name);
   for (std::string name : names) {
     if (constexpr std::string_view table = "parameters."; name.starts_with(table))
-      name.erase(0, table.size());  // its place: settings take both
+      name.erase(0, table.size());  // settings take both
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](const RunVariable& v) { return v.name == name; }))
       throw std::invalid_argument(reading::in_quotes(name) + " is named twice; expected it once");

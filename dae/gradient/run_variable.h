@@ -10,36 +10,34 @@
 
 namespace momenta {
 
-/// One of them.
 struct RunVariable {
-  /// Kinds.
   enum class Kind {
     parameter,  ///< a number of the scene's text
-    position,   ///< of a joint, from which the scene is assembled
-    rate        ///< of a joint, likewise
+    position,   ///< a joint's, guess for the assembly
+    rate        ///< a joint's, likewise
   };
-  Kind kind = Kind::parameter;  ///< its kind
-  std::string name;             ///< "a", "body.crank.mass", "O.q", "O.u"
-  std::string unit;             ///< of a start value; of a parameter empty
-  int place = -1;               ///< in q or u of a start value
-  double value = 0;             ///< of the scene
-  double size = 1;              ///< > 0, of which the steps of differences are a part
+  Kind kind = Kind::parameter;
+  std::string name;  ///< "a", "body.crank.mass", "O.q", "O.u"
+  std::string unit;  ///< a start value's unit
+  int place = -1;    ///< a start value's place in q or u
+  double value = 0;  ///< value in the scene
+  double size = 1;   ///< > 0; scale of the steps of differences
 };
 
-/// A scene as text, of which parameters can be changed.
+/// A scene as text, with parameters that can be changed.
 struct SceneText {
   std::string text;            ///< TOML
-  std::string file;            ///< what messages call it
+  std::string file;            ///< name in messages
   std::vector<Setting> fixed;  ///< numbers in place of its own
-  MechanismOptions options;    ///< of all its mechanisms
+  MechanismOptions options;    ///< options of all its mechanisms
   /// The scene with further numbers. @throws SceneError
   Scene scene(const std::vector<Setting>& more = {}) const;
 };
 
-/// Of names: a parameter, "a" or "parameters.a"; a coordinate or rate, as in the header of
+/// Variables by name: a parameter, "a" or "parameters.a"; a coordinate or rate, as in the header of
 /// trajectory.csv, but no part of a quaternion; any other number by its place
-/// (core/scene/toml/setting.h). `mechanism`: of the scene. @throws std::invalid_argument: one
-/// sentence on a name that is not known, or comes twice
+/// (core/scene/toml/setting.h). @throws std::invalid_argument: one sentence on a name that is
+/// unknown, or comes twice
 std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& mechanism,
                                        const std::vector<std::string>& names);
 

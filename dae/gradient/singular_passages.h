@@ -1,7 +1,7 @@
 #pragma once
-// When stages of a run came near to a singular pose, once for each passage: the weakest pivot of
-// the loops below a hundredth of its scale and of the largest so far. A pivot goes with the square
-// of the distance.
+// Times when stages of a run came near to a singular pose, once a passage: the weakest pivot of the
+// loops is below a hundredth of its scale and of the largest so far. Pivots go with the square of
+// the distance.
 
 #include <momenta/dae/kkt/loop_solver.h>
 
@@ -20,7 +20,7 @@ class SingularPassages {
     if (weakest < weakest_) weakest_at_ = t, weakest_ = weakest;
     largest_ = std::max(largest_, weakest);
   }
-  /// The step of the stages since then ends.
+  /// Ends a step.
   void end_step() {
     constexpr double near = 1e-2;
     const bool near_pose = weakest_ < near && weakest_ < near * largest_;
@@ -32,20 +32,20 @@ class SingularPassages {
     passing_ = near_pose;
     weakest_ = 1;
   }
-  /// Times [s].
+  /// [s]
   const std::vector<double>& times() const { return passages_; }
 
  private:
-  int always_faded_ = std::numeric_limits<int>::max();  ///< rows that are redundant in all stages
-  double weakest_ = 1;                                  ///< pivot in the step under way
-  double weakest_at_ = 0;                               ///< and when
-  double least_ = 1;                                    ///< of the passage under way
-  double largest_ = 0;                                  ///< of the run
+  int always_faded_ = std::numeric_limits<int>::max();  ///< rows redundant in all stages
+  double weakest_ = 1;                                  ///< weakest pivot in the step under way
+  double weakest_at_ = 0;                               ///< time of weakest_
+  double least_ = 1;                                    ///< least pivot in the passage under way
+  double largest_ = 0;                                  ///< largest pivot of the run
   bool passing_ = false;
   std::vector<double> passages_;
 };
 
-/// Why a run has no derivatives at a time, in words.
+/// Why a run has no derivatives at a time.
 inline constexpr const char* too_near_to_pose =
     "the motion passes too near to a singular pose, where its loop equations become dependent, for "
     "derivatives";

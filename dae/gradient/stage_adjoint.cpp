@@ -9,7 +9,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// L*_q less κ Φ_qᵀσ: ṗ without the forces that are differentiated by themselves.
+/// L*_q less κ Φ_qᵀσ: ṗ without the forces that are differentiated apart.
 struct PotentialRates : MomentumAndRateRows {
   bool forces = false, at_points = false;
   template <class E, class S>
@@ -81,7 +81,7 @@ Index StageAdjoint::at_once() const {
                        [](const OtherParameter& other) { return other.numbers.size() > 0; });
 }
 
-/// What numbers have so far by f and ḟ of drives, which are those at t.
+/// Adds slopes by f and ḟ of drives, all at t.
 void StageAdjoint::take_drives(double t, VectorXd& by_parameters) {
   if (!moves_drives_) return;
   numbers_->finish(slopes_);
@@ -137,7 +137,7 @@ bool StageAdjoint::factor(double t, const VectorXd& q) {
   return !matrix_.singular();
 }
 
-/// Φ_q u, at the place of the last factor().
+/// Φ_q u, at the pose of the last factor().
 VectorXd StageAdjoint::loop_rates(const VectorXd& u) {
   VectorXd moved(m_), still = VectorXd::Zero(m_);
   if (driven_) {
@@ -191,7 +191,7 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
   return true;
 }
 
-/// What numbers have of a gauge: c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ).
+/// Slopes of a gauge by numbers: c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ).
 void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p,
                              VectorXd& by_parameters) {
   numbers_->add(c, along_mu);

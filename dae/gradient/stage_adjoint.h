@@ -1,7 +1,7 @@
 #pragma once
-// The transposed derivative of the momentum form's right-hand side and of what it does after steps:
-// one product wᵀ f_y, and wᵀ f_θ of all θ, in the place of a tangent for each θ. The form is
-// canonical: with the augmented Lagrangian L* = T − V + σᵀ(Φ_q u + Φ_t),
+// The transposed derivative of the momentum form's right-hand side and of its changes after steps:
+// one product wᵀ f_y, and wᵀ f_θ of all θ, in place of a tangent for each θ. The form is canonical:
+// with the augmented Lagrangian L* = T − V + σᵀ(Φ_q u + Φ_t),
 //
 //   H(q, p) = stat over (u, σ) of  pᵀu − L*(q, u, σ),     f = J ∇H,   J = ( 0 1; −1 0 ),
 //
@@ -9,8 +9,8 @@
 //
 //   f_yᵀ w = (J H_yy)ᵀ w = H_yy Jᵀ w = Jᵀ f_y (Jᵀ w),         f_θᵀ w = D_z H_θ = −D_z L*_θ      (4)
 //
-// with z = Jᵀ w: one derivative of f along one direction, and nothing is run backwards in it. Of
-// w = (a, b): z = (−b, a), and with (δu, δσ) of (2) and δr of L*_q along (−b, δu, δσ),
+// with z = Jᵀ w: one derivative of f along one direction, and nothing is run backwards in it. For w
+// = (a, b): z = (−b, a), and with (δu, δσ) of (2) and δr of L*_q along (−b, δu, δσ),
 //
 //   f_yᵀ w = (−δr, δu),        f_θᵀ w = bᵀ r3_θ − δuᵀ r1_θ − δσᵀ r2_θ                           (5)
 //
@@ -20,18 +20,18 @@
 //   leak and β: with k = κ + β, −k Φ_q b in the second row of (2), −k Φ_qᵀ δσ in the result, and
 //     L*_q less κ Φ_qᵀσ. The derivative of Φ_qᵀσ by q is symmetric as well.
 //
-// After a step, for λ of the state behind it, c = 1 of a reset, 2 of a flip, p' = p − c Φ_qᵀσ:
+// After a step, for λ of the state behind it, c = 1 for a reset, 2 for a flip, p' = p − c Φ_qᵀσ:
 //   K μ = (0, Φ_q λ_p),  λ_p − c μ_u,  λ_q − c D_λp(Φ_qᵀσ) + c (D_μ L*_q + β Φ_qᵀ μ_σ)
 // or, since p' = c M u − (c − 1) p and u = ∂H/∂p, with δu, δr of f along (0, M λ_p),
 //   c δu − (c − 1) λ_p,  λ_q − c δr + c D_λp T_q  at σ = 0,
-// and of corrections correction_adjoint.h. Here D_μ is the derivative by (u, σ) along μ, and K the
-// matrix of (2).
+// and of corrections correction_adjoint.h. D_μ is the derivative by (u, σ) along μ, K the matrix of
+// (2).
 //
 // δu, δσ, δr come from the sweeps in dual numbers where they carry the mechanism (swept_tangent.h),
-// without leak and β, else from the rows and K. Of θ that numbers of bodies, joints, loops and
-// springs alone are made of, f_θᵀ w is that of all these at once (number_slopes.h): of L* with z,
-// of βΦ with −δσ, behind a gauge c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ); of others it is made
-// from the rows of mechanisms with neighbouring θ.
+// without leak and β, else from the rows and K. For θ that change numbers of tables alone, f_θᵀ w
+// is a sum of slopes by all numbers at once (number_slopes.h): of L* with z, of βΦ with −δσ, behind
+// a gauge c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ); other θ take the rows of mechanisms with
+// neighbouring θ.
 //
 // Derivation: docs/theory/gradients.md, section 7. Compare Maciąg, Malczyk, Frączek, Int. J. Numer.
 // Methods Eng. 121 (2020), who integrate the adjoint system of (7), (8), and Multibody Syst. Dyn.
@@ -58,38 +58,31 @@ class StageAdjoint final : public FormAdjoint {
   StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
                const std::vector<OtherParameter>& others);
 
-  /// f_yᵀ w (nq + nv) of w; by_parameters (others) += f_θᵀ w, of those taken at once at finish().
+  /// f_yᵀ w (nq + nv) of w; by_parameters (others) += f_θᵀ w, for those taken at once in finish().
   /// False where the matrix is singular. Cost: one evaluation of the sweeps in dual numbers, or two
   /// of rows and one factorisation; one sweep outward and inward for all numbers of tables; six
-  /// plain evaluations of rows for each other parameter.
+  /// plain evaluations of rows for each other θ.
   bool rates(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
              Eigen::VectorXd& by_parameters) override;
 
-  /// λ behind a reset or flip to λ before it, at the state where (7) was solved for it. Where u is
-  /// known the sweeps need not find it first.
+  /// λ before a reset or flip, from λ behind it, at the state of its (7). With known u the sweeps
+  /// need not find it.
   bool gauge(const AdjointState& at, Eigen::VectorXd& lambda,
              Eigen::VectorXd& by_parameters) override;
-  /// λ behind a correction of q to λ before it; q (nq) before it.
   bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
                   Eigen::VectorXd& by_parameters) override;
-  /// What numbers have had so far is added, once, when the way back is over.
   void finish(Eigen::VectorXd& by_parameters) override;
 
-  /// How many parameters are taken by number_slopes.h.
   Eigen::Index at_once() const override;
-  /// Whether states must have their u and σ, or u alone; else the sweeps find them, and where they
-  /// do not carry a state, products without both are false.
   bool needs_solutions() const override { return !swept_ || any_rows_; }
   bool needs_rates() const override { return losses_ ? losses_->at_state() : forces_.any(); }
-  /// Whether a state has both.
   bool solved(const AdjointState& at) const override {
     return at.u.size() == nv_ && at.sigma.size() == m_;
   }
-  /// Whether the sweeps are differentiated; else rows.
   bool swept() const { return swept_ != nullptr; }
   const double* found_rates() const override { return swept_ ? swept_->u.data() : nullptr; }
-  /// Rows and K alone from now on: the slow way, and where rows of Φ are redundant the only one:
-  /// there the sweeps let them fade.
+  /// Rows and K alone from now on: slower, but the only way where rows of Φ are redundant and fade
+  /// in the sweeps.
   void by_rows() override {
     swept_.reset();
     corrections_.system().by_matrix();
@@ -122,18 +115,18 @@ class StageAdjoint final : public FormAdjoint {
   StageMatrix matrix_;
   TransposedForces forces_;
   CorrectionAdjoint corrections_;
-  std::unique_ptr<LineLosses> losses_;     ///< null: forces_ alone has what they have
+  std::unique_ptr<LineLosses> losses_;     ///< null: forces_ has all
   std::unique_ptr<SweptTangent> swept_;    ///< null: by rows
-  std::unique_ptr<NumberSlopes> numbers_;  ///< null: no θ is taken so
+  std::unique_ptr<NumberSlopes> numbers_;  ///< null: no θ goes by numbers
   std::unique_ptr<KineticRates> kinetic_;  ///< where there are sweeps
-  Eigen::VectorXd slopes_;                 ///< by these numbers, so far
+  Eigen::VectorXd slopes_;                 ///< so far
   bool placed_ = false;                    ///< some θ changes places
   bool moves_drives_ = false;              ///< some θ changes laws of drives
   Gauge gauge_;
   MomentumAndRateRows rows_;
   Eigen::Index nv_, m_;
   bool driven_;
-  bool any_rows_ = false;  ///< some θ is taken from the rows of other mechanisms
+  bool any_rows_ = false;  ///< rows of other mechanisms give some θ
   std::vector<Dual8> x_, out_;
   Eigen::VectorXd by_q_, by_u_, along_q_, along_p_, still_, rates_, u_;
 };

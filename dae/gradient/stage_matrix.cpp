@@ -9,10 +9,9 @@ namespace {
 
 using Eigen::Index;
 
-/// Of the scaled matrix, beside its largest pivot: redundant rows are at what their loops are off
-/// by.
+/// Relative pivot of a redundant row in the scaled matrix: the error of its loop.
 constexpr double dependent = 1e-7;
-/// Of one without redundant rows: a loop 1e-5 from a singular pose has its square.
+/// Least reciprocal condition otherwise: a loop 1e-5 from a singular pose has its square.
 constexpr double singular_below = 1e-10;
 /// Unknowns from which on the sparse factors take less time.
 constexpr Index sparse_from = 40;
@@ -84,7 +83,7 @@ void StageMatrix::factor(Evaluation<double>& e) {
     dense_ = !sparse_->factor(soft_) || !(sparse_->pivot_ratio() > singular_below);
     singular_ = false;
     if (!dense_) return;
-    // Pivots chosen for sparsity may be small though the matrix is regular: the dense ones decide.
+    // Pivots chosen for sparsity may be small though the matrix is regular.
   }
   fill_dense();
   lu_.compute(matrix_);
@@ -97,7 +96,7 @@ Eigen::MatrixXd StageMatrix::solve(const Eigen::MatrixXd& right) {
     for (Index j = 0; j < x.cols() && !dense_; ++j)
       if (!sparse_->solve(x.col(j).data(), nullptr, true)) dense_ = true;
     if (!dense_) return scale_.asDiagonal() * x;
-    // The residual of a column did not come down to rounding.
+    // A residual did not come down to rounding.
     x = scale_.asDiagonal() * right;
     fill_dense();
     lu_.compute(matrix_);

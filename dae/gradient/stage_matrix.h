@@ -6,7 +6,7 @@
 //
 // scaled to unit diagonal and unit rows. By LU where the rows are independent at the start, sparse
 // (KLU, dae/kkt/klu_solver.h) from some tens of unknowns on; else by a complete orthogonal
-// decomposition: x is unique, and y is the shortest.
+// decomposition: x is unique, y the shortest.
 
 #include <momenta/dae/kkt/klu_solver.h>
 #include <momenta/dae/mechanism.h>
@@ -20,17 +20,17 @@ namespace momenta {
 class StageMatrix {
  public:
   explicit StageMatrix(const Mechanism& mechanism);
-  /// At the last place() of the evaluation. Sparse O(entries of the factors), else O((nv + m)³);
-  /// the first always.
+  /// Factorises at the last place() of the evaluation. Sparse O(entries of the factors), else, and
+  /// at first, O((nv + m)³).
   void factor(Evaluation<double>& e);
-  /// Of right-hand sides, nv + m × any number.
+  /// Solutions for right-hand sides, nv + m × any number.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right);
-  /// Whether the last one had another rank than the first, at the start: one of both poses is
-  /// singular, and no derivative passes it.
+  /// Whether the last matrix had another rank than the first, at the start: one pose is singular,
+  /// and no derivative passes it.
   bool singular() const { return singular_; }
-  /// The rows are known to be independent at the start, and nothing is decomposed for it.
+  /// The rows are independent at the start; spares a decomposition.
   void independent() { rank_ = nv_ + m_; }
-  /// Dense from now on, whatever the size.
+  /// Dense factors from now on.
   void dense() { sparse_.reset(); }
   bool is_sparse() const { return sparse_ != nullptr; }
 
@@ -39,11 +39,12 @@ class StageMatrix {
 
   const Mechanism& mechanism_;
   Eigen::Index nv_, m_;
-  Eigen::Index rank_ = -1;  ///< of the first
+  Eigen::Index rank_ = -1;  ///< rank of the first matrix
   bool singular_ = false;
-  bool dense_ = false;                      ///< the last factor() is a dense one
-  std::vector<KktPattern::Entry> entries_;  ///< M, then Φ_q below it, one of each place
-  std::vector<std::size_t> place_;          ///< of the entries of Φ_q as they are evaluated
+  bool dense_ = false;                      ///< the last factor() was dense
+  std::vector<KktPattern::Entry> entries_;  ///< M, then Φ_q below it, one for each place
+  std::vector<std::size_t> place_;          ///< places of the entries of Φ_q, in order of
+                                            ///< evaluation
   std::vector<double> values_, loops_, soft_;
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd scale_;

@@ -9,7 +9,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of (10): D⁻¹w, D⁻¹y (m), C v, C x (nv).
+/// The terms of (10): D⁻¹w, D⁻¹y (m), C v, C x (nv).
 struct StartAdjoint::Pulled {
   VectorXd w, y, v, x;
 };
@@ -32,9 +32,9 @@ StartAdjoint::StartAdjoint(const Mechanism& mechanism, Start start)
   if (placed_) numbers_ = make_number_slopes(mechanism, true);
 }
 
-/// Whether the start is where Newton's steps lead, all at poses where the rows are independent.
+/// Whether Newton's steps, all at poses with independent rows, lead to the start.
 bool StartAdjoint::follow() {
-  constexpr double same = 1e-9;  // [rad or lengths]: of two ways of closing to rounding
+  constexpr double same = 1e-9;  // [rad or lengths]: between two ways of closing to rounding
   LeastNorm steps(loops_.pattern(), mechanism_.m(), mechanism_.nv());
   Closing closing(loops_, steps, 0);
   const Closing::Pose pose = closing.close(mechanism_.tree().q0);
@@ -42,7 +42,7 @@ bool StartAdjoint::follow() {
       !(loops_.apart(pose.q, start_.q) <= same))
     return false;
   std::vector<Closing::NewtonStep> all = *closing.newton_steps();
-  // What is left is closed by one more step, so that derivatives are.
+  // One more step closes the rest, for derivatives too.
   all.push_back({start_.q, VectorXd::Zero(nv_), 1, false});
   for (Closing::NewtonStep& taken : all) {
     loops_.gap(0, taken.q);
@@ -88,7 +88,7 @@ VectorXd StartAdjoint::turned(const VectorXd& q, const VectorXd& along, const Ve
   return d;
 }
 
-/// u = u₀ + C x at the pose.
+/// Back through u = u₀ + C x at the pose.
 void StartAdjoint::through_rates(VectorXd& of_q, VectorXd& of_u) {
   const VectorXd &unit = loops_.units().rates, &q = start_.q, &u = start_.u;
   const VectorXd x = (u - mechanism_.tree().u0).cwiseQuotient(unit);
@@ -101,7 +101,7 @@ void StartAdjoint::through_rates(VectorXd& of_q, VectorXd& of_u) {
     numbers_->add_loop_rates(1,
                              {0, q.data(), u.data(), by.y.data(), nullptr, by.v.data(), w.data()});
   of_q += turned(q, by.v, by.y);
-  // ∂(wᵀΦ̇)/∂q = Φ̇_qᵀw, with what drives have in it: of ṗ, which is linear in w.
+  // ∂(wᵀΦ̇)/∂q = Φ̇_qᵀw, drives included: by ṗ, which is linear in w.
   x_.resize(static_cast<std::size_t>(2 * nv_ + m_));
   out_.resize(static_cast<std::size_t>(nv_));
   for (Index i = 0; i < nv_; ++i) {
@@ -124,7 +124,7 @@ void StartAdjoint::through_rates(VectorXd& of_q, VectorXd& of_u) {
   of_u += force;
 }
 
-/// q + C s x, from behind the step to before it.
+/// Back through q + C s x.
 void StartAdjoint::through_step(const Step& step, VectorXd& of_q) {
   const VectorXd &unit = loops_.units().rates, &x = step.whole;
   loops_.gap(0, step.q);
@@ -141,7 +141,7 @@ void StartAdjoint::through_step(const Step& step, VectorXd& of_q) {
     numbers_->add_loops(1, 0, step.q.data(), w.data());
     numbers_->add_loop_rates(
         1, {0, step.q.data(), by.x.data(), by.y.data(), nullptr, by.v.data(), w.data()});
-    if (driven_)  // a step is no motion: what drives have in wᵀΦ̇ goes
+    if (driven_)  // a step is no motion: no drives in wᵀΦ̇
       numbers_->add_loop_rates(-1,
                                {0, step.q.data(), nullptr, nullptr, nullptr, nullptr, w.data()});
   }
@@ -150,7 +150,7 @@ void StartAdjoint::through_step(const Step& step, VectorXd& of_q) {
   of_q += force + turned(step.q, by.x, w) + turned(step.q, by.v, by.y);
 }
 
-/// p = M u: λ of p handed on.
+/// Back through p = M u.
 void StartAdjoint::through_momenta(const VectorXd& of_p, VectorXd& of_q, VectorXd& of_u) {
   const VectorXd &q = start_.q, &u = start_.u;
   numbers_->add(1, {0, q.data(), u.data(), nullptr, nullptr, of_p.data(), nullptr});

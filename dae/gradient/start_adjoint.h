@@ -1,7 +1,7 @@
 #pragma once
-// The transposed derivative of the start y(0) = (q, p) of the momentum form, σ(0) = 0: of λ at the
-// start, λᵀ dy(0)/dn by all numbers n that it is made of (number_slopes.h), its guess among them.
-// Backwards through what the assembly did:
+// The transposed derivative of the start y(0) = (q, p) of the momentum form, σ(0) = 0: from λ at
+// the start to λᵀ dy(0)/dn by all numbers n on which it depends (number_slopes.h), its guess among
+// them. Backwards through the assembly:
 //
 //   p = M u (7)                   λ_q + D_λp T_q,  ū = M λ_p
 //   u = u₀ + C x,  A x = −D⁻¹Φ̇(q, u₀)                 rates: the least change that the loops allow
@@ -12,14 +12,14 @@
 //
 //   x̄ᵀ dx = −wᵀ(dφ + dA x) + yᵀ dA v,                                                       (10)
 //
-// since A v = 0: one derivative of wᵀΦ, wᵀΦ̇ and yᵀΦ̇ by q and by all numbers at once. By q these
-// are symmetric: ∂(σᵀΦ_q d)/∂q = D_d(Φ_qᵀσ). D drops out, and C is the length of the scene where
-// joints slide. The pose is a limit: behind the last step loops are closed to rounding, dq too by
-// one more step of x = 0. What steps leave of the guess, v, is not a projection at the pose alone,
-// since each step is the shortest at its own.
+// since A v = 0: one derivative of wᵀΦ, wᵀΦ̇ and yᵀΦ̇ by q and by all numbers at once. By q these are
+// symmetric: ∂(σᵀΦ_q d)/∂q = D_d(Φ_qᵀσ). D drops out, and C is the length of the scene where joints
+// slide. The pose is a limit: behind the last step loops are closed to rounding, and one more step
+// of x = 0 closes dq. The part v of the guess is not a projection at the pose alone: each step is
+// the shortest at its own.
 //
-// Where another way was gone than by these steps, or equations are redundant, there is no such
-// derivative: start_tangents.h.
+// Where the assembly went another way, or equations are redundant, there is no such derivative:
+// start_tangents.h.
 
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/dense/least_squares.h>
@@ -35,28 +35,27 @@ namespace momenta {
 
 class StartAdjoint {
  public:
-  /// Of the assembled start at t = 0. @pre neither quaternions nor nonholonomic rows, bodies. The
-  /// mechanism must outlive it. Cost: the assembly once more, and a QR factorisation of A for each
+  /// Takes the assembled start at t = 0. @pre neither quaternions nor nonholonomic rows, bodies.
+  /// The mechanism must outlive it. Cost: the assembly again, and a QR factorisation of A for each
   /// of its steps, O(nv m²)
   StartAdjoint(const Mechanism& mechanism, Start start);
-  /// The numbers.
   const NumberSlopes& numbers() const { return *numbers_; }
   /// Whether the assembly is differentiated; else back() takes (q, u) as given.
   bool follows_assembly() const { return follows_; }
-  /// λᵀ dy(0)/dn by the numbers of NumberSlopes, λ of 2 nv, of y = (q, p), or else of (q, u). Cost:
-  /// two sweeps and a solution by kept factors, O(nv m), for each step of the assembly.
+  /// λᵀ dy(0)/dn by the numbers of NumberSlopes; λ (2 nv) of y = (q, p), or else of (q, u). Cost
+  /// for each step of the assembly: two sweeps and a solution by kept factors, O(nv m).
   Eigen::VectorXd back(const Eigen::VectorXd& lambda, bool of_momenta = true);
-  /// By unit vectors λ: dy(0)/dn, 2 nv × numbers.
+  /// dy(0)/dn, 2 nv × numbers: back() of unit vectors λ.
   Eigen::MatrixXd rows(bool of_momenta);
-  /// dy(0) by a variable, of the numbers' slopes that back() returns or of rows of them: columns of
-  /// `slopes` are numbers. @pre other.starts_at_once
+  /// dy(0) by a variable, from back() or rows(): columns of `slopes` are numbers. @pre
+  /// other.starts_at_once
   Eigen::VectorXd by(const RunVariable& variable, const OtherParameter& other,
                      const Eigen::MatrixXd& slopes) const;
 
  private:
   struct Step : Closing::NewtonStep {
-    Eigen::MatrixXd transposed;  ///< Aᵀ at its q
-    DenseLeastSquares factors;   ///< of it
+    Eigen::MatrixXd transposed;  ///< Aᵀ at the step's q
+    DenseLeastSquares factors;   ///< factors of Aᵀ
   };
   struct Pulled;
   bool follow();
@@ -71,7 +70,7 @@ class StartAdjoint {
   Start start_;
   Eigen::Index nv_, m_;
   ScaledLoops loops_;
-  std::deque<Step> steps_;  ///< the last of x = 0, at the pose
+  std::deque<Step> steps_;  ///< the last with x = 0, at the pose
   std::unique_ptr<NumberSlopes> numbers_;
   std::unique_ptr<Evaluation<Dual8>> dual_;
   std::unique_ptr<KineticRates> kinetic_;

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// The start from this guess, loops closed to rounding.
+/// The start of this guess, loops closed to rounding.
 Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd& u) {
   Assembly a = assemble(mechanism, 0, q, u);
   if (mechanism.m() == 0 || a.start.residue.size() > 0) return a.start;
@@ -58,7 +58,7 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
           return state;
         });
     tangents.of_state.col(static_cast<Eigen::Index>(j)) = slope.by;
-    // Of a smooth start the formulas differ by h⁴; another assembly is about 1/h away.
+    // For a smooth start the formulas differ by h⁴, else by about 1/h.
     if (!(slope.apart <= 1e-3 * (size / v.size + slope.by.cwiseAbs().maxCoeff())))
       tangents.broken.push_back("the start changes too abruptly with " +
                                 reading::in_quotes(v.name) + " for a derivative: within " +

@@ -1,9 +1,8 @@
 #pragma once
-// How the start of a form depends on the numbers of a run: y(0) = (q, p) or (q, u) of the assembled
-// scene, assembly included, its choice of the nearest pose, of rates, and p = M u + Φ_qᵀσ with what
-// the gauge begins with. Differences of sixth order of the start itself (sixth_order.h); loops are
-// closed to rounding on both sides, not to the tolerance of the assembly, so that these have 12
-// digits.
+// How a form's start depends on the numbers of a run: y(0) = (q, p) or (q, u) of the assembled
+// scene, with its choice of the nearest pose and rates, and p = M u + Φ_qᵀσ with the gauge's first
+// σ. Differences of sixth order (sixth_order.h); loops are closed to rounding on both sides, which
+// leaves 12 digits.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/gradient/other_parameters.h>
@@ -15,15 +14,15 @@ struct StartTangents {
   std::vector<std::string> broken;  ///< sentences on variables by which the start has no derivative
 };
 
-/// Of the form of this name; the gains of `options` are held. Of variables whose start is taken at
-/// once (start_adjoint.h) columns stay zero. @throws SceneError. Cost: six to twelve assemblies for
-/// each other variable
+/// Tangents of the form of this name; the gains of `options` are held. Columns stay zero for
+/// variables whose start is taken at once (start_adjoint.h). @throws SceneError. Cost: six to
+/// twelve assemblies for each other variable
 StartTangents start_tangents(const Mechanism& mechanism, const std::string& form,
                              const FormOptions& options, const std::vector<RunVariable>& variables,
                              const std::vector<OtherParameter>& others);
 
-/// A change of y(0) that the loops allow, by displacements and rates of 1 in all joints, with signs
-/// that vary: what a run amplifies shows in its tangent. Size of y × 1. One factorisation
+/// A change of y(0) that loops allow, by displacements and rates of ±1 in all joints: what a run
+/// amplifies shows in its tangent. Size of y × 1. One factorisation
 Eigen::MatrixXd any_start_change(const Mechanism& mechanism, const Start& start, bool momenta);
 
 }  // namespace momenta

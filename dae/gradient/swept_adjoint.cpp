@@ -1,5 +1,4 @@
-// What StageAdjoint has from the sweeps: no matrix, and nothing is allocated unless a θ is taken
-// from rows.
+// Sweeps of StageAdjoint: no matrix, and nothing is allocated unless rows are taken for a θ.
 
 #include <momenta/dae/gradient/stage_adjoint.h>
 
@@ -28,7 +27,7 @@ bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& pr
   product.head(nv_) = -dpdot;
   product.tail(nv_) = du;
   if (forces_.any()) {
-    // ṗ has Q in it: its derivative along the direction goes, its transposed product comes.
+    // ṗ has Q: its derivative along the direction goes, its transposed product comes.
     still_ = du;
     if (losses_)
       losses_->along_rates(still_, by_u_);

@@ -53,7 +53,7 @@ class SweptTangentOf final : public SweptTangent {
     Index k = 0;
     if (lanes_) {
       const Index width = lanes_->width();
-      // The lanes left empty cost as much as the others: two directions go one by one.
+      // Empty lanes cost as much as others: two directions go one by one.
       for (; count - k > 2; k += width) {
         const Index of = std::min(width, count - k);
         spread(dq, k, of, in_q_);
@@ -94,8 +94,8 @@ class SweptTangentOf final : public SweptTangent {
     if (!swept_.shared.empty()) swept_.shared.to_given(x, 1);
     if (!swept_.carried.all()) swept_.carried.to_given(x, 1, nullptr);
   }
-  /// Numbers by rows of Φ (m) as the rows are swept, until the next call: of ties paired anew Φ' =
-  /// T Φ where σ = Tᵀσ', of balls along other axes as σ'.
+  /// Numbers by rows of Φ (m) as rows are swept, until the next call: for ties paired anew Φ' = T Φ
+  /// where σ = Tᵀσ', for balls along other axes as σ'.
   const double* as_swept(const double* rows) {
     if (!swept_.carried.all()) return swept_.carried.to_carried(rows);
     if (swept_.shared.empty()) return rows;
@@ -116,7 +116,7 @@ class SweptTangentOf final : public SweptTangent {
     in_paired_.noalias() = paired_ * Eigen::Map<const Eigen::VectorXd>(rows, in_paired_.size());
     return in_paired_.data();
   }
-  /// Columns from `first` on as lanes; those that are left are zero.
+  /// Columns from `first` on as lanes; others are zero.
   void spread(const MatrixXd& columns, Index first, Index count, MatrixXd& to) const {
     to.setZero(lanes_->width(), columns.rows());
     to.topRows(count) = columns.middleCols(first, count).transpose();

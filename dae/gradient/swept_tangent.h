@@ -1,8 +1,8 @@
 #pragma once
 // The derivative of (q, p, t) → (u, σ, ṗ), eqs. (7)-(8), along one direction (δq, δp) or several:
-// the sweeps that carry the loops, in dual numbers of one direction, or of one in each lane of a
-// register, compiled for the machine (levels/tangent_sweeps.h, levels/direction_sweeps.h). O(bodies
-// + m), no matrix; the evaluation itself comes along.
+// the sweeps that carry the loops, in dual numbers of one direction, or of one a lane, compiled for
+// the machine (levels/tangent_sweeps.h, levels/direction_sweeps.h). O(bodies + m), no matrix; u, σ,
+// ṗ come along.
 
 #include <momenta/dae/mechanism.h>
 
@@ -16,24 +16,24 @@ namespace momenta {
 class SweptTangent {
  public:
   virtual ~SweptTangent() = default;
-  /// At (t, q, p) along (dq, dp), nv each; without quaternions. False where a joint has
-  /// no inertia or a branch is weak.
+  /// Sweeps at (t, q, p) along (dq, dp), nv each; without quaternions. False where a joint has no
+  /// inertia or a branch is weak.
   virtual bool operator()(double t, const double* q, const double* p, const double* dq,
                           const double* dp) = 0;
-  // Of the last call: u and its derivative, that of ṗ (nv), all forces included; σ and its (m).
+  // Last results: u and its derivative, that of ṗ (nv), all forces included; σ and its (m).
   std::vector<double> u, du, dpdot, sigma, dsigma;
 
-  /// Of several directions, by columns: dq, dp, du and dpdot nv × directions, besides and dsigma m
-  /// × directions. `besides` joins the second row of (2): Φ_q δu + δΦ_q u + … + besides = 0; empty:
-  /// zero. Results are resized. Cost: of one direction about two evaluations, of each of eight less
-  /// than one where fronts are narrow.
+  /// Several directions, by columns: dq, dp, du and dpdot nv × directions, besides and dsigma m ×
+  /// directions. `besides` joins the second row of (2): Φ_q δu + δΦ_q u + … + besides = 0; empty:
+  /// zero. Resizes results. Cost: about two evaluations for one direction, less than one for each
+  /// of eight where fronts are narrow.
   virtual bool along(double t, const double* q, const double* p, const Eigen::MatrixXd& dq,
                      const Eigen::MatrixXd& dp, const Eigen::MatrixXd& besides, Eigen::MatrixXd& du,
                      Eigen::MatrixXd& dpdot, Eigen::MatrixXd& dsigma) = 0;
 };
 
-/// With κ of (8) and β of (7) [1/s]. Null where the sweeps do not carry the loops or the forces:
-/// then there is the matrix alone.
+/// `leak`: κ of (8), `beta`: β of (7) [1/s]. Null where the sweeps do not carry the loops or the
+/// forces.
 std::unique_ptr<SweptTangent> make_swept_tangent(const Mechanism& mechanism, double leak = 0,
                                                  double beta = 0);
 

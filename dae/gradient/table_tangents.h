@@ -16,22 +16,22 @@ namespace momenta {
 
 class TableTangents {
  public:
-  /// κ of r3 and β of r2 [1/s].
+  /// Gains: κ of r3 and β of r2 [1/s].
   struct FedBack {
     double leak = 0, beta = 0;
   };
   virtual ~TableTangents() = default;
-  /// Fills r1, r2, r3 at t [s], q (nq), u (nv), σ (m; null: zero). Cost: of eight θ about one
-  /// evaluation where they are of inertias and forces, about five with places. O(bodies + m)
+  /// Fills r1, r2, r3 at t [s], q (nq), u (nv), σ (m; null: zero). Cost for eight θ: about one
+  /// evaluation for inertias and forces, five with places. O(bodies + m)
   virtual void at(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u, const double* sigma,
                   const FedBack& gains) = 0;
-  Eigen::MatrixXd r1, r2, r3;  ///< nv, m and nv, × θ; zero of those that it does not take
+  Eigen::MatrixXd r1, r2, r3;  ///< nv, m and nv, × θ; zero where not `taken`
   std::vector<bool> taken;     ///< by θ
-  bool any_loops = false;      ///< r2 is not zero of some
+  bool any_loops = false;      ///< r2 is not zero
 };
 
-/// Of the `others` that have numbers; null where there are none. The mechanism must outlive it.
-/// @pre bodies, no quaternions
+/// Tangents for `others` with numbers; null: none has any. The mechanism must outlive it. @pre
+/// bodies, no quaternions
 std::unique_ptr<TableTangents> make_table_tangents(const Mechanism& mechanism,
                                                    const std::vector<OtherParameter>& others);
 

@@ -1,15 +1,15 @@
 #pragma once
 // A form's system with its tangents: y, the integral J of a functional, and their derivatives along
-// directions, as one system that every explicit method integrates,
+// directions, as one system for every explicit method,
 //
 //   (y, J, Y, dJ)' = (f, g, f_y Y + f_θ, dg),
 //
-// by the method's own stages, so that Y is the derivative of the y that the method finds. All of
-// them count in the norm of the local error, in their units over those of θ: a motion that rests,
-// or one whose fast modes do, lets steps grow until Y is unstable; an integrand may be faster than
-// the motion; and where f has corners f_y jumps, and a step over one leaves an error of first order
-// in Y. The tolerance is that of n unknowns among all, tol √(n/N). Step sizes are held: their own
-// dependence on θ is as small as the local error.
+// by the method's own stages: Y is the derivative of the y that the method finds. All count in the
+// norm of the local error, in their units over those of θ: a motion that rests, or whose fast modes
+// do, lets steps grow until Y is unstable; an integrand may be faster than the motion; and where f
+// has corners f_y jumps, and a step over one leaves an error of first order in Y. The tolerance is
+// that of n unknowns among all, tol √(n/N). Step sizes are held: they depend on θ by as little as
+// the local error.
 
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/functional.h>
@@ -19,21 +19,20 @@ namespace momenta {
 
 class TangentSystem final : public OdeSystem {
  public:
-  /// `integrand` null: no J. All must outlive it.
-  /// `sizes` of θ; `tangents_scale`: of Y in the norm of the error, compared with that of y.
+  /// `integrand` null: no J. All must outlive it. `sizes` of θ; `tangents_scale`: scale of Y beside
+  /// that of y in the norm of the error.
   TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand, Eigen::VectorXd sizes,
                 double tangents_scale);
 
   int size() const override { return all_; }
-  /// What rtol and atol are to be multiplied by.
+  /// Factor for rtol and atol.
   double tolerance_factor() const;
-  /// y, then its tangents column by column, J and its.
+  /// y, then its tangents column by column, J and its tangents.
   std::vector<double> initial(const std::vector<double>& y0, const Eigen::MatrixXd& Y0) const;
-  /// The tangents in a state of it: size of y × directions.
+  /// Tangents in a whole state: size of y × directions.
   Eigen::MatrixXd tangents(const double* y) const;
   /// Why the last trial of a step had no derivatives, one sentence; empty: it had.
   const std::string& lost() const { return lost_; }
-  /// When stages came near to a singular pose.
   const std::vector<double>& singular_passages() {
     passages_.end_step();
     return passages_.times();
@@ -41,7 +40,7 @@ class TangentSystem final : public OdeSystem {
   double integral(const double* y) const { return y[n_]; }
   Eigen::VectorXd integral_tangents(const double* y) const;
 
-  /// q, u and their tangents at a state of it.
+  /// q, u and their tangents at a whole state.
   struct Motion {
     Eigen::VectorXd q, u;
     Eigen::MatrixXd dq, du;
@@ -78,7 +77,7 @@ class TangentSystem final : public OdeSystem {
   Eigen::VectorXd sizes_;
   double tangents_scale_;
   bool corrected_stages_ = false;
-  int looking_ = 0;  ///< depth
+  int looking_ = 0;  ///< depth of trials
   SingularPassages passages_;
   std::string lost_;
   std::vector<double> before_;

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double free_value = 1e-9;  // singular values, beside the largest
+constexpr double free_value = 1e-9;  // relative singular values of freedoms
 
 class Search {
  public:
@@ -113,9 +113,9 @@ class Search {
     return found;
   }
 
-  /// D⁻¹ Φ_q C in the columns that are free, and which these are.
+  /// D⁻¹ Φ_q C in the free columns; `rates`: their indices.
   MatrixXd free_columns(const VectorXd& q, std::vector<int>& rates) {
-    loops_.gap(t_, q);  // places it
+    loops_.gap(t_, q);  // places the loops at q
     const std::vector<double> entries = loops_.jacobian();
     MatrixXd all = MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
     for (std::size_t k = 0; k < entries.size(); ++k)
@@ -139,7 +139,7 @@ class Search {
       null = svd.v.rightCols(j.cols() - svd.rank(free_value));
     }
     if (null.cols() <= spins_) return;
-    // Rates that span the freedoms: the pivots of what is left free.
+    // Rates that span the freedoms: pivots of the null space.
     const Eigen::ColPivHouseholderQR<MatrixXd> pivots(null.transpose());
     std::vector<std::string> names;
     for (Eigen::Index k = 0; k < null.cols(); ++k)
@@ -153,7 +153,7 @@ class Search {
         reading::all_in_quotes(names));
   }
 
-  /// The name of the coordinate that has this rate.
+  /// Name of the coordinate with this rate.
   std::string coordinate_of(int u) const {
     for (const auto& body : mechanism_.tree().bodies)
       if (u >= body.u && u < body.u + body.nv)
@@ -187,7 +187,7 @@ class Search {
   const AssembliesRequest& request_;
   ScaledLoops loops_;
   std::vector<std::pair<int, int>> held_;
-  int spins_ = 0;  ///< freedoms of legs that solutions are not about
+  int spins_ = 0;  ///< freedoms of legs, not in solutions
   std::optional<PoseSpace> space_;
 };
 

@@ -11,13 +11,13 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double near_by = 0.3;     // how far a change point is looked for [units]
-constexpr double seems_lost = 0.2;  // singular values that may vanish there, beside the first
+constexpr double near_by = 0.3;     // distance of a change point [units]
+constexpr double seems_lost = 0.2;  // relative singular values that may vanish
 constexpr double rank_is_lost = 1e-7, rank_is_kept = 1e-4;  // the same at a change point
-constexpr double closes_all = 1e-10;  // |F|∞ in units, at the most, of curves that cross
+constexpr double closes_all = 1e-10;                        // |F|∞ in units of curves that cross
 
-/// Newton's method for ∂β/∂y = 0 from `at`; false where it does not end near by, or where other
-/// ranks than k are lost there.
+/// Newton's method for ∂β/∂y = 0 from `at`; false where it does not end near by, or other than k
+/// ranks are lost.
 bool lose_ranks(PoseCurve& curve, Eigen::Index k, CurvePoint& at) {
   constexpr int most_steps = 25;
   constexpr double difference = 1e-5, settled = 1e-9;
@@ -78,7 +78,7 @@ bool change_point_near(PoseCurve& curve, const CurvePoint& near, CurvePoint& at)
 }
 
 void go_straight_across(PoseCurve& curve, const CurvePoint& from, CurvePoint& at) {
-  // By the parabola through both that is tangent at `from`, then by differences along the curve.
+  // First by the parabola through both points, tangent at `from`, then by differences.
   constexpr double distinct = 1e-4;
   const VectorXd chord = curve.way(from, at);
   at.tangent = chord.norm() > distinct ? 2 * chord.normalized() - from.tangent : from.tangent;

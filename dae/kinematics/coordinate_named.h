@@ -8,8 +8,8 @@
 
 namespace momenta {
 
-/// Places in q and u. @throws SceneError where no coordinate is called so, or where it is part of a
-/// quaternion: the sentence lists those that are. O(bodies)
+/// Places in q and u. @throws SceneError with all names for an unknown one or a part of a
+/// quaternion. O(bodies)
 std::pair<int, int> coordinate_named(const Mechanism& mechanism, const std::string& name);
 
 }  // namespace momenta

@@ -1,9 +1,9 @@
 #pragma once
 // Products of dual quaternions x = e + ε g, ε² = 0, as matrices on (e, g), each (w, x, y, z).
 //
-// A displacement is a dual quaternion up to a factor, with e ē = 1 when it has length one, and e·g
-// = 0 (Study's condition): it turns by e and shifts by 2 g ē. A turn by θ about the line of unit
-// direction l through c, and a shift by d along l, are
+// A displacement is a dual quaternion up to a factor, with e·g = 0 (Study's condition); of length
+// one, e ē = 1, it turns by e and shifts by 2 g ē. A turn by θ about the line of unit direction l
+// through c, and a shift by d along l, are
 //
 //   cos θ/2 + sin θ/2 (l + ε c × l),      1 + ε d/2 l
 
@@ -33,7 +33,6 @@ inline Eigen::Matrix4d times_from_right(const Eigen::Vector4d& v) {
   return m;
 }
 
-/// The quaternion of a vector.
 inline Eigen::Vector4d pure(const Eigen::Vector3d& v) {
   return {0, v.x(), v.y(), v.z()};
 }

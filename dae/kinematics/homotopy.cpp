@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::VectorXcd;
 
-constexpr double same_end = 1e-8;  // apart, of ends, beside length one
+constexpr double same_end = 1e-8;  // distance between equal ends of length one
 
-/// Whether two ends are one point: in every group parallel.
+/// Whether ends are parallel in every group.
 bool is_same(const PolynomialSystem& f, const VectorXcd& a, const VectorXcd& b) {
   for (const VariableGroup& g : f.groups()) {
     Complex product = 0;

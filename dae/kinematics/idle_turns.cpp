@@ -9,14 +9,14 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double null = 1e-9;  // singular values, beside the largest
+constexpr double null = 1e-9;  // singular value of a freedom, relative
 
 struct Ball {
   const Tree::Body* body = nullptr;
-  Eigen::Vector3d axis;  ///< of the idle turn, in child axes
+  Eigen::Vector3d axis;  ///< axis of the idle turn, in child axes
 };
 
-/// Balls that turn while nothing else does, each about one axis.
+/// Balls that turn while nothing else moves.
 std::vector<Ball> idle_balls(ScaledLoops& loops, double t, const VectorXd& q) {
   const Mechanism& mechanism = loops.mechanism();
   std::vector<Ball> balls;
@@ -49,7 +49,7 @@ std::vector<Ball> idle_balls(ScaledLoops& loops, double t, const VectorXd& q) {
     balls[k].axis = turns.u.col(0);
     idle.push_back(balls[k]);
   }
-  // A finite turn, in all ways at once.
+  // A finite turn, along all directions at once.
   for (Eigen::Index i = 0; i < ways.cols(); ++i)
     for (std::size_t k = 0; k < balls.size(); ++k)
       step.segment<3>(balls[k].body->u) +=

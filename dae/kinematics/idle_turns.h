@@ -1,7 +1,7 @@
 #pragma once
-// Freedoms on which nothing depends: a coupler with a ball at both ends spins about the line
-// through them. Of J's ways at the start they are those in which balls alone turn, each about one
-// line, and which a finite turn follows with loops closed.
+// Idle freedoms: a coupler with a ball at both ends spins about the line through them. In J's null
+// space at the start, these are directions in which balls alone turn, each about one line, and
+// which a finite turn follows with loops closed.
 
 #include <momenta/dae/kinematics/pose_curve.h>
 
@@ -10,8 +10,8 @@
 
 namespace momenta {
 
-/// Starts the curve at the pose q, idle turns held as far as there are: false where more than one
-/// freedom is left, or none. @param held names of the joints whose turn is held
+/// Starts the curve at the pose q with all idle turns held; false: not one freedom is left. @param
+/// held names of their joints
 bool start_without_idle_turns(PoseCurve& curve, double t, const Eigen::VectorXd& q,
                               CurvePoint& point, std::vector<std::string>& held);
 

@@ -1,12 +1,11 @@
 #pragma once
-// Vectors of a plane as polynomials, in isotropic coordinates: a complex number z, and in place of
-// its conjugate a number w that counts as independent.
+// Vectors of a plane as polynomials, in isotropic coordinates: a complex number z and a number w in
+// place of its conjugate, taken as independent.
 
 #include <momenta/dae/kinematics/polynomial_system.h>
 
 namespace momenta {
 
-/// A vector of the plane as a polynomial, and its conjugate.
 struct Isotropic {
   Polynomial z, w;
 };

@@ -1,9 +1,9 @@
 #pragma once
-// Where a function with one minimum between two places has it.
+// Place of the minimum of a function that has one between two places.
 
 namespace momenta {
 
-/// By the golden section, to `within`: corners do no harm. f may be infinite.
+/// Golden section, to `within`; corners do no harm, f may be infinite.
 template <class F>
 double least_between(F&& f, double a, double b, double within) {
   constexpr double golden = 0.6180339887498949;

@@ -52,7 +52,7 @@ Vector3d origin_of_loop(const Scene& scene, const LoopSpec& loop, double t) {
 
 namespace {
 
-/// Whether the pieces that move are one ring with the base.
+/// Whether moving pieces form one ring with the base.
 bool is_one_loop(const Pieces& pieces) {
   const std::vector<TieChain> chains = tie_chains(pieces);
   return chains.size() == 1 && chains[0].from == pieces.base() && chains[0].to == pieces.base();

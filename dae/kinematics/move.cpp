@@ -16,11 +16,12 @@ namespace {
 using Eigen::VectorXd;
 constexpr double turn = 2 * std::numbers::pi;
 constexpr double longest_step = 0.1, shortest_step = 1e-9;  // in units
-// From here on s is given, not the distance: no step that bends by so little turns s round.
+// Least |τ_s| at which s is given, not the distance: s does not turn back in a step of so little
+// bend.
 constexpr double steep = 0.3;
-constexpr int most_ranked = 200;          // loop equations whose rank is asked for beside the start
-constexpr double nearly_singular = 1e-6;  // pivot of B where a curve that crosses is as near
-constexpr double at_rest = 1e-7;          // τ_s of a dead point that is typed in a file
+constexpr int most_ranked = 200;          // loop equations whose rank is judged beside the start
+constexpr double nearly_singular = 1e-6;  // pivot of B where a crossing curve is as near
+constexpr double at_rest = 1e-7;          // τ_s of a dead point that a file gives
 
 class Follower {
  public:
@@ -61,7 +62,7 @@ class Follower {
   }
 
  private:
-  /// Of each coordinate whether a full turn brings the pose back.
+  /// Whether a full turn brings the pose back, for each coordinate.
   std::vector<bool> angles() const {
     std::vector<bool> result(static_cast<std::size_t>(mechanism_.nq()), false);
     for (const auto& body : mechanism_.tree().bodies)
@@ -122,7 +123,7 @@ class Follower {
                        " beside it, so that curves of poses cross; expected a start beside it");
   }
 
-  /// Whether the first coordinate has no rate along the curve, not at a dead point alone.
+  /// Whether the first coordinate has no rate along the curve, not only at a dead point.
   bool stays() {
     constexpr double no_rate = 1e-11;
     CurvePoint to = here_;
@@ -131,7 +132,7 @@ class Follower {
     return true;
   }
 
-  /// The next s that is a row: of the grid, where the start comes round again, or the end.
+  /// Next s of a row: on the grid, at the start again, or the end.
   double next_s(double way, double end) const {
     const double s = here_.s, near = 1e-9 * by_;
     const auto after = [&](double spacing) {
@@ -181,15 +182,15 @@ class Follower {
   enum class Ahead {
     free,     ///< the curve goes there
     crossed,  ///< another curve crosses before it, at change_
-    lost      ///< it is of another curve
+    lost      ///< the point is on another curve
   };
 
-  /// What is between here and a point that Newton's method came to. det B(τ) keeps its sign along a
-  /// curve; it changes where another one crosses, and to that one.
+  /// Obstacles up to a point of Newton's method. det B(τ) keeps its sign along a curve; it changes
+  /// where another one crosses, and towards it.
   Ahead look_ahead(CurvePoint& to) {
     const auto flips = [&] { return here_.orientation * to.orientation < 0; };
     if (!flips() && to.pivot > nearly_singular) return Ahead::free;
-    // Unless the rows are at fault, which depend on each other where others do not.
+    // The rows may be at fault if others do not depend on each other.
     if (curve_->has_spare_rows() && here_.orientation != 0 && curve_->choose_rows(to.q, here_) &&
         curve_->orient(to) && !flips() && to.pivot > nearly_singular)
       return Ahead::free;
@@ -200,7 +201,7 @@ class Follower {
     return flips() ? Ahead::lost : Ahead::free;
   }
 
-  /// A change point near this point, on the way ahead of this length: change_.
+  /// Finds a change point near `near`, ahead by up to `length`: change_.
   bool change_at(const CurvePoint& near, double length) {
     constexpr double least = 1e-9;
     if (!change_point_near(*curve_, near, change_)) return false;
@@ -215,7 +216,6 @@ class Follower {
     return !(s_rate * here_.s_rate() < 0);  // a dead point comes first
   }
 
-  /// On to change_.
   void pass(double end) {
     const CurvePoint at = change_;
     rows_before(at, here_.s_rate(), end);
@@ -226,7 +226,7 @@ class Follower {
     move_on(at);
   }
 
-  /// The point at a distance h from here where `value` of it is zero.
+  /// Point at a distance h from here where `value` is zero.
   template <class Value>
   std::optional<CurvePoint> found(double h, double at_start, double at_end, Value value) {
     CurvePoint point;
@@ -238,7 +238,7 @@ class Follower {
     return point;
   }
 
-  /// A step by its length, which may pass rows or a dead point: there it ends.
+  /// Takes a step by length, up to a row or dead point.
   void cross(const CurvePoint& to, double h, double end) {
     const double way = here_.s_rate();
     if (way != 0 && way * to.s_rate() < 0) {
@@ -252,7 +252,7 @@ class Follower {
     }
     rows_before(to, to.s_rate(), end);
     if (result_.end != MoveResult::End::stopped) return;
-    // The next row may be where the step ends, to rounding.
+    // The next row may be at the step's end.
     const double s = next_s(to.s_rate(), end);
     if (std::abs(to.s - s) <= 1e-9 * by_) {
       CurvePoint there;
@@ -264,7 +264,6 @@ class Follower {
     move_on(to);
   }
 
-  /// A dead point.
   void turn_back(CurvePoint at, double way, double end) {
     rows_before(at, way, end);
     if (result_.end != MoveResult::End::stopped) return;
@@ -276,8 +275,8 @@ class Follower {
     move_on(at);
   }
 
-  /// How far from here τ_s is least, of one sign at both ends, by Hermite's cubic through them: two
-  /// dead points may lie between. 0 where it is least at an end.
+  /// Distance of the least |τ_s|, of one sign at both ends, by Hermite's cubic: two dead points may
+  /// lie between. 0: least at an end.
   double rests_between(const CurvePoint& to, double h) const {
     const double first = here_.s_rate(), last = to.s_rate(),
                  bend = 6 * ((to.s - here_.s) / h - 0.5 * (first + last));
@@ -288,7 +287,7 @@ class Follower {
     return std::abs(least) < 0.5 * std::abs(first) || least * first < 0 ? x * h : 0;
   }
 
-  /// The rows between here and a point, s on one way.
+  /// Takes rows before a point; s does not turn.
   void rows_before(const CurvePoint& to, double way, double end) {
     while (result_.end == MoveResult::End::stopped) {
       const double s = next_s(way, end);
@@ -302,12 +301,12 @@ class Follower {
     }
   }
 
-  /// How far along τ of one point another is.
+  /// Distance of `to` along τ of `from`.
   double distance(const CurvePoint& from, const CurvePoint& to) {
     return curve_->way(from, to).dot(from.tangent);
   }
 
-  /// A row whose s was asked for.
+  /// Arrives at a row whose s was asked for.
   void arrive(const CurvePoint& to, double end) {
     rows_->take(*curve_, to, MovedPose::Kind::sample);
     if (std::isfinite(end) && std::abs(to.s - end) <= 1e-9 * by_)
@@ -317,7 +316,7 @@ class Follower {
     move_on(to);
   }
 
-  /// Where the curve is closed, it ends.
+  /// Ends a closed curve.
   void close(const CurvePoint& to) {
     if (!has_left_ || !is_beginning(to)) return;
     if (!request_.to)
@@ -327,12 +326,12 @@ class Follower {
                     reading::digits(*request_.to) + ": it is back at the start";
   }
 
-  /// The same pose, passed the same way.
+  /// Whether the start is passed the same way.
   bool is_beginning(const CurvePoint& to) const {
     return is_there(to) && to.tangent.dot(beginning_.tangent) > 0;
   }
 
-  /// The same pose as at the start.
+  /// Whether the pose is the start's.
   bool is_there(CurvePoint to) const {
     constexpr double same = 1e-7;
     for (const auto& body : mechanism_.tree().bodies)  // −q is the same turn
@@ -347,7 +346,7 @@ class Follower {
     return true;
   }
 
-  /// Limits of coordinates on the way; then from there.
+  /// Locates limits of coordinates on the way, and moves.
   void move_on(const CurvePoint& to) {
     for (const auto& body : mechanism_.tree().bodies)
       for (int i = 0; i < body.nq; ++i) {
@@ -367,8 +366,8 @@ class Follower {
     here_ = to;
   }
 
-  /// Where an even number of ranks are lost at once, det B keeps its sign; its smallest pivot goes
-  /// down to zero and up again.
+  /// Where an even number of ranks is lost, det B keeps its sign, and its smallest pivot goes down
+  /// to zero and up again.
   void look_back(const CurvePoint& to) {
     if (!before_ || !(before_->pivot > here_.pivot && here_.pivot <= to.pivot)) return;
     const double first = distance(*before_, here_), second = distance(here_, to),
@@ -398,8 +397,8 @@ class Follower {
   PoseCurve* curve_ = nullptr;
   CurvePoint here_, beginning_, change_;
   std::optional<CurvePoint> before_;
-  bool has_left_ = false;  ///< the start, by more than what is the same pose
-  // s of the curve is in units: pose.s = unit_ s.
+  bool has_left_ = false;
+  // s of the curve in units: pose.s = unit_ s.
   double step_ = longest_step, by_ = 0, unit_ = 1;
   MoveResult result_;
 };

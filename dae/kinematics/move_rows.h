@@ -1,5 +1,5 @@
 #pragma once
-// The rows of a move: points of the curve of poses as what is told of them.
+// The rows of a move, made from points of the curve of poses.
 
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/kinematics/passed_extremes.h>
@@ -13,16 +13,15 @@ namespace momenta {
 
 class MoveRows {
  public:
-  /// Names the columns of `result`. @param inputs rates that are swept
+  /// Names the columns of `result`. @param inputs swept rates
   /// @param unit of s on the curve [rad or m]
-  /// @throws SceneError where the output is not known
+  /// @throws SceneError for an unknown output
   MoveRows(const Mechanism& mechanism, double t, const MoveRequest& request,
            const std::vector<int>& inputs, const std::vector<HeldCoordinate>& held, double unit,
            MoveResult& result);
-  /// A point becomes a row, behind the others; a change point, which is found when the curve is
-  /// beyond it, where it was passed.
+  /// Appends a row; a change point, found from beyond it, at its place.
   void take(PoseCurve& curve, const CurvePoint& at, MovedPose::Kind kind);
-  /// A point of the curve that is no row.
+  /// Takes a point without a row.
   void pass(PoseCurve& curve, const CurvePoint& at);
 
  private:
@@ -31,8 +30,8 @@ class MoveRows {
   const MoveRequest& request_;
   double t_;                                    ///< [s]
   double unit_;                                 ///< pose.s = unit_ s
-  std::unique_ptr<Transmission> transmission_;  ///< null: no output is asked for
-  std::unique_ptr<PassedExtremes> extremes_;    ///< the same
+  std::unique_ptr<Transmission> transmission_;  ///< null: no output
+  std::unique_ptr<PassedExtremes> extremes_;    ///< null: no output
   MoveResult& result_;
 };
 

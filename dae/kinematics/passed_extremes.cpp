@@ -21,7 +21,7 @@ Transmitting PassedExtremes::pass(PoseCurve& curve, const CurvePoint& at, bool i
   return last_->passed;
 }
 
-/// From two poses beside the dead point, one twice as far as the other.
+/// Limit at a dead point, by two poses beside it, one twice as far.
 Transmitting PassedExtremes::limit(PoseCurve& curve, const CurvePoint& at) {
   constexpr double beside = 1e-4, grows = 1.5;
   CurvePoint there;
@@ -34,7 +34,7 @@ Transmitting PassedExtremes::limit(PoseCurve& curve, const CurvePoint& at) {
   return {angle, infinite, near.where};
 }
 
-/// Where the last point lies beyond the one before and `next`, between these two.
+/// Locates an extreme if the last point is beyond both neighbours.
 void PassedExtremes::locate(PoseCurve& curve, const Seen& next) {
   constexpr double within = 1e-9;
   const double back = -curve.way(last_->at, before_->at).norm(),

@@ -1,8 +1,8 @@
 #pragma once
-// Extremes of what is passed to an output along a curve of poses, located between its points, not
-// read off them; and its limits at dead points. There the effort that holds a unit effort on the
-// output is infinite, and so is a force f that takes it: with power f·v = 1 of the output at unit
-// rate, sin μ = 1/(|f| |v|) = 0. Where f takes no part in what is infinite, μ has another limit.
+// Extremes of angle and force at an output along a curve of poses, located between its points, and
+// their limits at dead points. There a unit effort on the output takes an infinite effort, and so
+// an infinite force f: with power f·v = 1 of the output at unit rate, sin μ = 1/(|f| |v|) = 0.
+// Where f stays finite, μ has another limit.
 
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/kinematics/pose_curve.h>
@@ -17,7 +17,7 @@ class PassedExtremes {
   /// Both must outlive it. @param unit of s on the curve [rad or m]
   PassedExtremes(Transmission& transmission, double unit, MoveResult::Passed& found)
       : transmission_(transmission), unit_(unit), found_(found) {}
-  /// The next point of the curve; what it passes.
+  /// The next point of the curve.
   Transmitting pass(PoseCurve& curve, const CurvePoint& at, bool is_dead_point);
 
  private:

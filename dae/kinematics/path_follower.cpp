@@ -11,11 +11,11 @@ using Eigen::VectorXcd;
 namespace {
 
 constexpr double t_end = 1e-8;
-constexpr double newton_size = 1e-10;   // of a step that ends Newton's method
-constexpr double beside = 1e-5;         // how far a path may lie from where it was expected
-constexpr double regular = 1e-11;       // smallest pivot over the largest of a regular end
-constexpr double proper_size = 1e-6;    // of the proper variables of a finite end
-constexpr double smallest_step = 1e-9;  // of t
+constexpr double newton_size = 1e-10;   // step that ends Newton's method
+constexpr double beside = 1e-5;         // distance from the prediction
+constexpr double regular = 1e-11;       // relative pivot of a regular end
+constexpr double proper_size = 1e-6;    // least proper variables of a finite end
+constexpr double smallest_step = 1e-9;  // step of t
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::pair<PathEnd, VectorXcd> PathFollower::follow(VectorXcd x) {
   double checked_at = 0;  // t where the proper variables were kept
   std::vector<double> kept;
   while (t > t_end) {
-    // At the most 30 % of what is left, and of the short way near t = 1 as well.
+    // At most 30 % of the rest, and of the way from t = 1.
     const double h = std::min({step, 0.3 * longest_ * t, t - t_end});
     VectorXcd next = x;
     if (predict(next, t, h) && correct(next, t - h)) {
@@ -58,7 +58,7 @@ std::pair<PathEnd, VectorXcd> PathFollower::follow(VectorXcd x) {
   return {told == PathEnd::lost ? PathEnd::singular : told, x};
 }
 
-/// |x_proper| of each set; x has length one in each group.
+/// |x_proper| by set; x has length one in each group.
 std::vector<double> PathFollower::proper(const VectorXcd& x) const {
   std::vector<double> sizes;
   for (const VariableGroup& g : f_.groups())
@@ -70,7 +70,7 @@ std::vector<double> PathFollower::proper(const VectorXcd& x) const {
   return sizes;
 }
 
-/// Infinite where the proper variables fell like t^a, a > 0.05, since they were kept; else lost.
+/// Infinite if the proper variables fell like t^a, a > 0.05, since `kept`; else lost.
 PathEnd PathFollower::seems_infinite(const VectorXcd& x, double t, const std::vector<double>& kept,
                                      double since) const {
   if (kept.empty() || t > 0.1 * since) return PathEnd::lost;
@@ -89,7 +89,7 @@ void PathFollower::normalise(VectorXcd& x) const {
   }
 }
 
-/// H, H_t (n) and H_x with the rows of the patch below it.
+/// H, H_t (n) and H_x, with the rows of the patch below.
 void PathFollower::evaluate(const VectorXcd& x, double t) {
   f_.evaluate(x, of_f_, slopes_f_);
   g_.evaluate(x, of_g_, slopes_g_);
@@ -135,7 +135,7 @@ bool PathFollower::correct(VectorXcd& x, double t) {
   return false;
 }
 
-/// Newton's method on F; smallest pivot over largest at its end, 0 where there is none.
+/// Newton's method on F; returns smallest over largest pivot at its end, 0 without one.
 double PathFollower::polish(VectorXcd& x) {
   patch_ = x;
   double pivots = 0, before = 1e-3;
@@ -146,7 +146,7 @@ double PathFollower::polish(VectorXcd& x) {
     const double size = step.norm();
     const Eigen::VectorXd diagonal = lu_.matrixLU().diagonal().cwiseAbs();
     pivots = diagonal.minCoeff() / diagonal.maxCoeff();
-    if (!(size < before)) return size < 1e-11 ? pivots : 0;  // what rounding leaves
+    if (!(size < before)) return size < 1e-11 ? pivots : 0;  // rounding
     x -= step;
     normalise(x);
     patch_ = x;

@@ -1,5 +1,5 @@
 #pragma once
-// One path of a homotopy (homotopy.h) after the other.
+// Follows paths of a homotopy (homotopy.h), one after the other.
 
 #include <momenta/dae/kinematics/start_system.h>
 
@@ -13,10 +13,10 @@ enum class PathEnd { finite, infinite, singular, lost };
 
 class PathFollower {
  public:
-  /// Of t γ G + (1 − t) F; steps are `longest` times as long as they could be.
+  /// Follows t γ G + (1 − t) F; steps are `longest` times as long as possible.
   PathFollower(const PolynomialSystem& f, const StartSystem& g, Complex gamma, double longest)
       : f_(f), g_(g), gamma_(gamma), longest_(longest) {}
-  /// From a solution at t = 1: how it ends, and where.
+  /// End of the path from a solution at t = 1.
   std::pair<PathEnd, Eigen::VectorXcd> follow(Eigen::VectorXcd x);
 
  private:

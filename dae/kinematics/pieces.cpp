@@ -221,7 +221,7 @@ std::vector<TieChain> tie_chains(const Pieces& pieces) {
   });
   for (const int piece : starts)
     if (is_end(piece)) walk(piece);
-  for (const int piece : starts) walk(piece);  // rings that nothing holds
+  for (const int piece : starts) walk(piece);  // rings apart
   return chains;
 }
 

@@ -1,15 +1,15 @@
 #pragma once
-// The pieces of a mechanism with some coordinates held: bodies and ground between which nothing
-// moves (welded, held or driven) are one, whatever their joints are. Between pieces stand ties,
-// told by what they are in the own pose and not by how they are written:
+// The pieces of a mechanism with some coordinates held: bodies and ground without motion between
+// them (welded, held or driven) are one piece, whatever their joints. Between pieces stand ties,
+// told by their motion in the own pose, not by their kind in the file:
 //
 //   ball      turns about a centre            joints and loops spherical, loops point
 //   hinge     turns about a line              joints and loops revolute
 //   slide     shifts along a way              joints and loops prismatic
 //   distance  two points keep their distance  loops
 //
-// A joint of several coordinates is a chain of such ties, those of its parts that move: a universal
-// joint two hinges, one with an angle held a hinge. Loops of kind universal (two hinges) and
+// A joint of several coordinates is a chain of such ties, one for each part that moves: a universal
+// joint is two hinges, with one angle held a hinge. Loops of kind universal (two hinges) and
 // cylindrical (a hinge and a slide on it) have a piece of their own in between, which is no body.
 
 #include <momenta/dae/mechanism.h>
@@ -20,41 +20,40 @@
 
 namespace momenta {
 
-/// What moves between two pieces, or from one to itself.
+/// Motion between two pieces, or of one to itself.
 struct Tie {
   enum class Kind { ball, hinge, slide, distance, other };
   Kind kind = Kind::other;
-  int first = -1, second = -1;  ///< pieces, the second moves as said on the first
-  Eigen::Vector3d centre;       ///< of a ball, on a hinge, on the first end [m], own pose
-  Eigen::Vector3d way;  ///< a hinge's or a slide's, of length one; to a distance's second end
+  int first = -1, second = -1;  ///< pieces; the second moves on the first
+  Eigen::Vector3d centre;       ///< ball: centre, hinge: point, distance: first end [m]; own pose
+  Eigen::Vector3d way;          ///< hinge, slide: of length one; distance: to its second end
   const JointSpec* joint = nullptr;
-  const LoopSpec* loop = nullptr;  ///< the other is null
-  bool in_part = false;            ///< a loop some of whose coordinates are driven
-  /// "joint 'U' of kind universal", for messages.
+  const LoopSpec* loop = nullptr;  ///< joint or loop is null
+  bool in_part = false;            ///< some coordinates of the loop are driven
+  /// For messages: "joint 'U' of kind universal".
   std::string in_words() const;
-  /// Its line of the file, for messages.
   Location at() const { return joint ? joint->at : loop->at; }
 };
 
-/// @throws SceneError: a mechanism in space that is not written as polynomials, and why
+/// @throws SceneError: why a mechanism in space has no polynomials
 [[noreturn]] void refuse_in_space(const Mechanism& mechanism, Location at, const std::string& why);
 
 class Pieces {
  public:
-  /// At time t [s], in the pose `poses` of the bodies (poses_of_polynomials) that closes the loops.
-  /// @param held of each rate (nv). O(joints + loops)
+  /// Pieces at time t [s], in the pose `poses` of the bodies (poses_of_polynomials) that closes the
+  /// loops. @param held by rate (nv). O(joints + loops)
   Pieces(const Mechanism& mechanism, double t, const std::vector<Eigen::Isometry3d>& poses,
          const std::vector<bool>& held);
-  /// The piece of a body of the tree; −1: of the ground.
+  /// −1: ground.
   int of(int body) const { return number_[static_cast<std::size_t>(body + 1)]; }
   int base() const { return of(-1); }
-  /// Pieces have numbers from 0 to this, not all of them.
+  /// Bound of the pieces' numbers, not all in use.
   int count() const { return static_cast<int>(number_.size()); }
   const std::vector<Tie>& ties() const { return ties_; }
-  /// "body 'platform'", the first of a piece, for messages.
+  /// First body of a piece, for messages: "body 'platform'".
   std::string in_words(int piece) const;
-  /// The coordinates (nq) with every piece displaced from the own pose so, q there.
-  /// @param displaced of each piece (count)
+  /// Coordinates (nq) with pieces displaced from the own pose, whose coordinates are q. @param
+  /// displaced by piece (count)
   Eigen::VectorXd coordinates(const std::vector<Eigen::Isometry3d>& displaced,
                               Eigen::VectorXd q) const;
 
@@ -67,21 +66,19 @@ class Pieces {
 
   const Mechanism& mechanism_;
   const std::vector<Eigen::Isometry3d>& poses_;
-  std::vector<int>
-      number_;  ///< of the piece of each body, the ground's first; then of those between
+  std::vector<int> number_;  ///< piece of each body, the ground's first; then those between
   std::vector<Tie> ties_;
 };
 
-/// Pieces with two ties, one after the other, between two that have another number of them or
-/// stand.
+/// A chain through pieces with two ties, between the base or pieces with another number of ties.
 struct TieChain {
-  int from = -1, to = -1;        ///< the pieces at its ends
-  std::vector<const Tie*> ties;  ///< in order from there to there
-  std::vector<int> pieces;       ///< between them, one less
+  int from = -1, to = -1;        ///< end pieces
+  std::vector<const Tie*> ties;  ///< from `from` to `to`
+  std::vector<int> pieces;
 };
 
-/// Every tie is in one of them. The ends of a chain of ties to the base: from there, else from the
-/// piece with more ties.
+/// Chains of all ties. A chain with an end at the base starts there, others at the piece with more
+/// ties.
 std::vector<TieChain> tie_chains(const Pieces& pieces);
 
 }  // namespace momenta

@@ -109,7 +109,7 @@ class PlanarLoops final : public LoopPolynomials {
   Complex origin(int body) const {
     return body < 0 ? Complex(0) : in_plane(poses_[of(body)].translation()) / length_;
   }
-  /// Of the joint of a body.
+  /// Axis of a body's joint.
   Complex axis(int body) const { return in_plane(poses_[of(body)].linear().col(2)); }
   bool along_normal(int body) const {
     return mechanism_.plan().basis.col(2).dot(poses_[of(body)].linear().col(2)) > 0;
@@ -128,7 +128,7 @@ class PlanarLoops final : public LoopPolynomials {
                        [&](const DriveSpec& d) { return d.loop == l.name && d.origin.empty(); });
   }
 
-  /// Which bodies turn as one, the ground's angle the first.
+  /// Groups bodies that turn as one; the ground's angle is the first.
   void find_angles() {
     std::vector<int> same(tree_.bodies.size() + 1);  // ground first
     for (std::size_t i = 0; i < same.size(); ++i) same[i] = static_cast<int>(i);
@@ -172,7 +172,7 @@ class PlanarLoops final : public LoopPolynomials {
     return static_cast<int>(groups_.size()) - 1;
   }
 
-  /// Whether only the slide of body k moves on the slide of its parent.
+  /// Whether the slide of body k alone moves on the slide of its parent.
   bool slides_on_a_slide(int k) const {
     const int parent = tree_.bodies[of(k)].parent;
     if (parent < 0 || tree_.bodies[of(parent)].kind != JointKind::prismatic || !moves_[of(parent)])
@@ -226,7 +226,7 @@ class PlanarLoops final : public LoopPolynomials {
     }
     std::vector<Polynomial> equations;
     const auto add = [&](Polynomial p) {
-      p = gathered(p);  // what holds at every pose asks nothing
+      p = gathered(p);  // equations that hold at every pose vanish
       if (std::any_of(p.begin(), p.end(), [](const Monomial& m) { return !m.variables.empty(); }))
         equations.push_back(std::move(p));
     };
@@ -253,7 +253,7 @@ class PlanarLoops final : public LoopPolynomials {
         add(gap.w * way.z + scaled(gap.z * way.w, -1));
         continue;
       }
-      // A driven slide stays apart as it is.
+      // A driven slide keeps its distance.
       const Isotropic apart = slides ? turn(b) * constant(on_a - on_b) : constant(0);
       add((gap - apart).z);
       add((gap - apart).w);
@@ -267,12 +267,12 @@ class PlanarLoops final : public LoopPolynomials {
   VectorXd own_;
   std::vector<Isometry3d> poses_;
   double length_;
-  std::vector<bool> moves_;                  ///< by body, whether its one coordinate does
-  std::vector<int> groups_;                  ///< of each variable
-  std::vector<std::pair<int, int>> angles_;  ///< z and w of each angle, none of the ground's
-  std::vector<int> angle_;                   ///< of each body, the ground first
-  std::vector<int> slides_;                  ///< s of each body; −1: none
-  std::vector<std::pair<int, int>> both_;    ///< X and X̄ of each body; −1: none
+  std::vector<bool> moves_;                  ///< by body: its coordinate moves
+  std::vector<int> groups_;                  ///< by variable
+  std::vector<std::pair<int, int>> angles_;  ///< z and w by angle, without the ground's
+  std::vector<int> angle_;                   ///< by body, the ground first
+  std::vector<int> slides_;                  ///< s by body; −1: none
+  std::vector<std::pair<int, int>> both_;    ///< X and X̄ by body; −1: none
   std::optional<PolynomialSystem> system_;
 };
 

@@ -2,14 +2,13 @@
 // Loops in a plane as polynomials, in isotropic coordinates (C. W. Wampler, ASME J. Mech. Des. 121
 // (1999) 382-387).
 //
-// A vector of the plane is a complex number. Against the own pose a body is turned by z = e^{iφ};
-// w = e^{−iφ}, so that z w = 1. Its origin lies at
+// A vector of the plane is a complex number. A body is turned from the own pose by z = e^{iφ}; w =
+// e^{−iφ}, so that z w = 1. Its origin lies at
 //
-//   O = O_parent + z_parent (r + s e)      r: as it is in the own pose, e: way of a slide, s: how
-//   far
+//   O = O_parent + z_parent (r + s e)      r: in the own pose, e: direction of a slide, s: its way
 //
-// and at Ō with w in place of z and conjugate constants: O and Ō, z and w count as independent. Of
-// D = O_A + z_A a − O_B − z_B b
+// and at Ō with w in place of z and conjugate constants: O and Ō, z and w are independent. With D =
+// O_A + z_A a − O_B − z_B b
 //
 //   point, revolute, spherical   D = 0,  D̄ = 0
 //   weld                         the same, and z_A = z_B
@@ -17,9 +16,9 @@
 //   distance                     D D̄ = l²
 //
 // a driven slide is a pair of points, a driven angle z_A = z_B. Bodies of one angle have one z. Two
-// slides one after the other on a body that does not turn are one X = s₁ e₁ + s₂ e₂ and X̄. Groups:
-// all z and X, all w and X̄, each s. With N angles in L loops of hinges the Bézout number is the
-// binomial (2L over L): 2, 6, 20. A solution is real where w = z̄, X̄ the conjugate of X, s real.
+// slides in a row on a body that does not turn are one X = s₁ e₁ + s₂ e₂ and X̄. Groups: all z and
+// X, all w and X̄, each s. With N angles in L loops of hinges the Bézout number is the binomial (2L
+// over L): 2, 6, 20. A solution is real where w = z̄, X̄ the conjugate of X, s real.
 
 #include <momenta/dae/kinematics/loop_polynomials.h>
 

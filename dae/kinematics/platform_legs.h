@@ -1,7 +1,7 @@
 #pragma once
-// A platform on six rods. Of the pieces of a mechanism (pieces.h) two stand out: the base, of which
-// the ground is, and the platform, which most ties meet. Between them are chains of ties, each a
-// loop of kind distance or a leg that asks the same (platform_rod.h).
+// A platform on six rods. Two pieces of a mechanism (pieces.h) are special: the base, with the
+// ground, and the platform, with the most ties. Chains of ties connect them, each a loop of kind
+// distance or a leg with the same effect (platform_rod.h).
 
 #include <momenta/dae/kinematics/platform_rod.h>
 
@@ -10,11 +10,11 @@
 namespace momenta {
 
 struct PlatformLegs {
-  int platform = -1;              ///< the piece
-  std::vector<PlatformRod> rods;  ///< six; their chains are of ties of the pieces
+  int platform = -1;
+  std::vector<PlatformRod> rods;  ///< six chains of ties of the pieces
 };
 
-/// @throws SceneError naming the joint, loop or body that makes it another mechanism
+/// @throws SceneError with the joint, loop or body that does not fit
 PlatformLegs platform_legs(const Mechanism& mechanism, const Pieces& pieces);
 
 }  // namespace momenta

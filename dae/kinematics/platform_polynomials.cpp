@@ -62,7 +62,7 @@ class Platform final : public LoopPolynomials {
   }
 
  private:
-  /// The pose with the platform displaced from the own one, where the legs can follow.
+  /// The pose with the platform displaced, where the legs can follow.
   std::optional<VectorXd> with_platform(const Isometry3d& displacement) const {
     std::vector<Isometry3d> displaced(static_cast<std::size_t>(pieces_.count()),
                                       Isometry3d::Identity());

@@ -10,8 +10,8 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double parallel = 1e-6;  // |a × b| of lines that count as parallel
-constexpr double off = 1e-8;       // how far lines may miss a centre [lengths of the scene]
+constexpr double parallel = 1e-6;  // |a × b| of parallel lines
+constexpr double off = 1e-8;       // largest distance of lines from a centre [lengths of the scene]
 
 bool is_ball(const Tie* tie) {
   return tie->kind == Tie::Kind::ball;
@@ -29,7 +29,7 @@ double distance_to(const Vector3d& point, const Tie& hinge) {
   return (point - hinge.centre).cross(hinge.way).norm();
 }
 
-/// Halfway between two lines that are not parallel.
+/// The point midway between two lines that are not parallel.
 Vector3d crossing(const Tie& s, const Tie& t) {
   const Vector3d across = s.way.cross(t.way), between = t.centre - s.centre;
   const double size = across.squaredNorm();
@@ -38,7 +38,7 @@ Vector3d crossing(const Tie& s, const Tie& t) {
   return (on_s + on_t) / 2;
 }
 
-/// The one centre of ties that make all rotations, or two hinges across each other.
+/// The centre of ties that make all rotations, or of two hinges across each other.
 std::optional<Vector3d> centre_of(const std::vector<const Tie*>& ties, double length) {
   std::optional<Vector3d> centre;
   const auto ball = std::find_if(ties.begin(), ties.end(), is_ball);
@@ -75,7 +75,7 @@ bool PlatformRod::split_at(std::size_t place, double length) {
   if (freedoms(below) < 2 || freedoms(above) < 2 || all < 5) return false;
   const auto b = centre_of(below, length), p = centre_of(above, length);
   if (!b || !p || (*b - *p).norm() <= off * length) return false;
-  // What turns about the leg itself moves none of its ends.
+  // Turns about the leg itself do not move its ends.
   const Vector3d leg = (*p - *b).normalized();
   const auto along = [&](const Tie* tie) { return tie->way.cross(leg).norm() <= parallel; };
   if (freedoms(below) == 2 && along(below[1])) return false;
@@ -103,7 +103,7 @@ std::optional<PlatformRod> PlatformRod::of(const TieChain& chain, double length)
   return std::nullopt;
 }
 
-/// The turn of each tie that together make one rotation; a ball makes it alone.
+/// Turns of ties that together make one rotation; a ball makes it alone.
 PlatformRod::Turns PlatformRod::turned(const std::vector<const Tie*>& ties,
                                        const Quaterniond& whole) {
   if (!has_ball(ties)) return turns_that_make(ties[0]->way, ties[1]->way, ties[2]->way, whole);

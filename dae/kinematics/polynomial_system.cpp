@@ -14,7 +14,7 @@ Polynomial gathered(const Polynomial& p) {
   }
   double largest = 0;
   for (const auto& [variables, factor] : sums) largest = std::max(largest, std::abs(factor));
-  constexpr double rounding = 1e-14;  // of the largest factor
+  constexpr double rounding = 1e-14;  // relative to the largest factor
   Polynomial result;
   for (const auto& [variables, factor] : sums)
     if (std::abs(factor) > rounding * largest) result.push_back({factor / largest, variables});
@@ -96,7 +96,7 @@ void PolynomialSystem::find_degrees() {
 }
 
 long PolynomialSystem::bezout(long most) const {
-  // Coefficients by exponents, equation by equation; none beyond n_g.
+  // Coefficients by exponents, none beyond n_g, equation by equation.
   std::map<std::vector<int>, long> sums{{std::vector<int>(groups_.size(), 0), 1}};
   for (const std::vector<int>& degrees : degrees_) {
     std::map<std::vector<int>, long> next;

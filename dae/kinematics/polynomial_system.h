@@ -1,11 +1,11 @@
 #pragma once
 // Polynomial equations in a product of projective spaces, and their derivatives.
 //
-// The variables fall into groups; each equation is homogeneous in each group g, of degree d_ig.
-// A group of n_g + 1 variables is a projective space of dimension n_g; there are as many equations
-// as dimensions, n = Σ n_g. Of affine equations each group has a variable that makes it
-// homogeneous, `one`; a solution with one = 0 stands at infinity. A group without it is projective
-// by nature; its solutions are at infinity where all variables of a set of `proper` vanish.
+// The variables fall into groups; each equation is homogeneous in each group g, of degree d_ig. A
+// group of n_g + 1 variables is a projective space of dimension n_g; there are as many equations as
+// dimensions, n = Σ n_g. A group of affine equations has a variable `one` that makes it
+// homogeneous, zero for solutions at infinity. A group without it is projective by nature; its
+// solutions are at infinity where all variables of a set of `proper` vanish.
 //
 // The number of isolated solutions is at most the multihomogeneous Bézout number: the coefficient
 // of Π α_g^{n_g} in Π_i Σ_g d_ig α_g. Source: A. P. Morgan, A. J. Sommese, Appl. Math. Comput. 24
@@ -21,7 +21,7 @@ using Complex = std::complex<double>;
 
 struct Monomial {
   Complex factor;
-  std::vector<int> variables;  ///< with repetition; any order
+  std::vector<int> variables;  ///< repeated, in any order
 };
 using Polynomial = std::vector<Monomial>;
 
@@ -30,20 +30,21 @@ Polynomial operator*(const Polynomial& a, const Polynomial& b);
 /// c a
 Polynomial scaled(Polynomial a, Complex c);
 
-/// Monomials of the same variables in one, over the largest factor; those of rounding left out.
+/// Sums monomials of the same variables, over the largest factor; leaves out rounding.
 Polynomial gathered(const Polynomial& p);
 
 struct VariableGroup {
-  std::vector<int> variables;            ///< all of them, `one` too
-  std::vector<std::vector<int>> proper;  ///< of each of these one is not zero in finite solutions
+  std::vector<int> variables;            ///< all variables, `one` included
+  std::vector<std::vector<int>> proper;  ///< sets of variables; in a finite solution one of each is
+                                         ///< not zero
 };
 
 class PolynomialSystem {
  public:
-  /// Affine equations: group `of[x]` of each variable x; variables `one` are added behind them.
-  /// @pre as many equations as variables
+  /// Affine equations: variable x is in group `of[x]`; variables `one` follow the others. @pre as
+  /// many equations as variables
   PolynomialSystem(std::vector<Polynomial> equations, const std::vector<int>& of);
-  /// Homogeneous ones in these groups.
+  /// Homogeneous equations in these groups.
   PolynomialSystem(std::vector<Polynomial> equations, std::vector<VariableGroup> groups);
 
   int variables() const { return variables_; }

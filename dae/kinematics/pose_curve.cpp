@@ -7,7 +7,7 @@
 namespace momenta {
 namespace {
 
-constexpr double independent = 1e-9;  // pivots of J, beside the largest
+constexpr double independent = 1e-9;  // relative pivots of J
 constexpr double most_bend = 0.25;    // [rad] between two tangents
 constexpr int corrections = 8;
 constexpr double closed = 1e-12;  // |F|∞ in units, at least
@@ -51,7 +51,7 @@ void PoseCurve::size_rows() {
 }
 
 void PoseCurve::take_jacobian(const Eigen::VectorXd& q) {
-  loops_.gap(t_, q);  // places it
+  loops_.gap(t_, q);  // places the loops at q
   jacobian_.topRows(m_).setZero();
   const std::vector<double> entries = loops_.jacobian();
   for (std::size_t k = 0; k < entries.size(); ++k)
@@ -79,7 +79,8 @@ double PoseCurve::take_residual(const Eigen::VectorXd& q, double s) {
   return std::max(open - contradiction_.left, residual_.cwiseAbs().maxCoeff());
 }
 
-/// Up to `most` of them: along the curve no more than n are independent but by contradictions.
+/// Chooses up to `most` rows: along the curve no more than n are independent, but for
+/// contradictions.
 bool PoseCurve::choose_rows(const Eigen::VectorXd& q, int most) {
   take_jacobian(q);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian_.transpose());
@@ -88,7 +89,7 @@ bool PoseCurve::choose_rows(const Eigen::VectorXd& q, int most) {
   freedoms_ = n_ + 1 - rank;
   free_rates_.clear();
   if (freedoms_ > 1) {
-    // Pivots of J's columns, s the last to be free: what is not a pivot may be chosen.
+    // Pivots of J's columns, s the last to be free; columns without a pivot may be chosen.
     Eigen::MatrixXd ordered(jacobian_.rows(), n_);
     for (int i = 0; i < n_; ++i) ordered.col(i) = jacobian_.col(i);
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns(ordered);
@@ -101,7 +102,7 @@ bool PoseCurve::choose_rows(const Eigen::VectorXd& q, int most) {
   rows_.resize(static_cast<std::size_t>(n_));
   for (int i = 0; i < n_; ++i)
     rows_[static_cast<std::size_t>(i)] = static_cast<int>(qr.colsPermutation().indices()[i]);
-  std::sort(rows_.begin(), rows_.end());  // so that det B has one sign whoever chose them
+  std::sort(rows_.begin(), rows_.end());  // so that the sign of det B does not depend on the order
   return true;
 }
 
@@ -111,14 +112,14 @@ bool PoseCurve::start(const Eigen::VectorXd& q, CurvePoint& point) {
   if (!choose_rows(q, n_ + 1)) return false;
   point.q = q;
   point.s = 0;
-  // J has full rank: what is missing of it is τ.
+  // The null space of J, of full rank, is τ.
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian_, Eigen::ComputeFullV);
   Eigen::VectorXd way = svd.matrixV().col(n_);
   if (way[n_] < 0) way = -way;
   return take_tangent(way, point);
 }
 
-/// B with the last row `along`: τ with τ·along > 0, and det B for r = τ.
+/// Takes τ with τ·along > 0, and det B for r = τ, from B with the last row `along`.
 bool PoseCurve::take_tangent(const Eigen::VectorXd& along, CurvePoint& point) {
   for (int i = 0; i < n_; ++i) bordered_.row(i) = jacobian_.row(rows_[static_cast<std::size_t>(i)]);
   bordered_.row(n_) = along;
@@ -127,7 +128,7 @@ bool PoseCurve::take_tangent(const Eigen::VectorXd& along, CurvePoint& point) {
   const double length = way.norm();
   if (!std::isfinite(length)) return false;
   point.tangent = way / length;
-  // det B(τ) = det B(along) |way|, as along·way = 1: of one sign.
+  // det B(τ) = det B(along) |way| has the same sign, as along·way = 1.
   const auto pivots = lu_.matrixLU().diagonal();
   int sign = sign_ * static_cast<int>(lu_.permutationP().determinant());
   for (const double pivot : pivots) sign = pivot < 0 ? -sign : sign;
@@ -136,7 +137,7 @@ bool PoseCurve::take_tangent(const Eigen::VectorXd& along, CurvePoint& point) {
   return true;
 }
 
-/// Newton's method across `row`: row·(δ, s) stays.
+/// Newton's method across `row`: row·(δ, s) is constant.
 bool PoseCurve::correct(CurvePoint& point, const Eigen::VectorXd& row) {
   double last = INFINITY;
   for (int k = 0; k <= corrections; ++k) {
@@ -158,8 +159,8 @@ bool PoseCurve::correct(CurvePoint& point, const Eigen::VectorXd& row) {
   return false;
 }
 
-/// Poses are off by what numbers contradict each other, over the pivots of the rows chosen: those
-/// that are farthest from depending on each other are chosen there.
+/// Chooses the most independent rows anew: a pose is off by the contradiction of numbers over the
+/// pivots of the chosen rows.
 void PoseCurve::renew_rows(const CurvePoint& from) {
   if (contradiction_.left == 0 || from.orientation == 0) return;
   CurvePoint known = from;
@@ -191,7 +192,7 @@ bool PoseCurve::derivatives(const CurvePoint& at, Eigen::VectorXd& u, Eigen::Vec
   if (std::abs(at.s_rate()) < dead) return false;
   const Eigen::VectorXd& unit = loops_.units().rates;
   u = at.tangent.head(n_).cwiseProduct(unit) / at.s_rate();
-  // Φ̈ = 0 with u̇ = 0 at first: J_R u̇ = −Φ̈, swept and held coordinates not accelerated.
+  // Φ̈ = 0, from u̇ = 0: J_R u̇ = −Φ̈; swept and held coordinates are not accelerated.
   Evaluation<double>& e = loops_.evaluation();
   take_jacobian(at.q);
   Eigen::VectorXd tau(n_), rate(m_);

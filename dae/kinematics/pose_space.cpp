@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
-constexpr double start_width = 1.5;  // of starts [lengths]
-constexpr double turned_gap = 1e-9;  // |Φ| that a full turn may leave, in units
+constexpr double start_width = 1.5;  // range of starts [lengths]
+constexpr double turned_gap = 1e-9;  // largest |Φ| after a full turn, in units
 
 }  // namespace
 
@@ -57,7 +57,7 @@ VectorXd PoseSpace::start(std::uint64_t seed, std::size_t i, const std::vector<b
                                                     : full_turn;
     q[at] += wide * (2 * drawn(k) - 1);
   }
-  for (const int at : quaternions_) {  // even over rotations: Shoemake, Graphics Gems III, 1992
+  for (const int at : quaternions_) {  // evenly over rotations: Shoemake, Graphics Gems III, 1992
     const auto k = static_cast<std::size_t>(at);
     const double a = drawn(k), b = full_turn * drawn(k + 1), c = full_turn * drawn(k + 2);
     q.segment<4>(at) << std::sqrt(1 - a) * std::sin(b), std::sqrt(1 - a) * std::cos(b),

@@ -16,22 +16,22 @@ using Eigen::VectorXd;
 using Span = Eigen::Matrix<double, 8, 4>;
 
 constexpr double meets = 1e-7;      // mutual moment of lines that cross or are parallel
-constexpr double dependent = 1e-7;  // singular values of a span, beside the largest
-constexpr double stands = 1e-6;     // s/c of what has to stand where it is
-constexpr double no_turn = 1e-8;    // (c² + s²)/(|c|² + |s|²) of what is no displacement
+constexpr double dependent = 1e-7;  // relative singular value of a dependent direction
+constexpr double stands = 1e-6;     // largest s/c of a screw that has to stay
+constexpr double no_turn = 1e-8;    // least (c² + s²)/(|c|² + |s|²) of a displacement
 
 /// c and s of a screw, up to a factor.
 using Pair = std::array<Complex, 2>;
 
-/// x = A B C: one alone and two that follow each other.
+/// x = A B C: a single screw and two in a row.
 struct Half {
-  std::size_t alone, first, second;  ///< of the six
+  std::size_t alone, first, second;  ///< numbers of screws
   double sign;                       ///< −1: inverse
-  bool leads;                        ///< whether the one alone stands before the two
-  DualProduct times;                 ///< by its L, from its side
+  bool leads;                        ///< the single screw stands before the two
+  DualProduct times;                 ///< product with its L, from its side
   Span span;
-  Eigen::Matrix<double, 4, 8> parts;  ///< what a member of the span is made of
-  double moment;                      ///< of the two
+  Eigen::Matrix<double, 4, 8> parts;  ///< coordinates of a member of the span
+  double moment;                      ///< mutual moment of both lines
 };
 
 Half half_of(const std::vector<LoopScrew>& screws, double length,
@@ -160,7 +160,7 @@ class SpaceLoop final : public LoopPolynomials {
                      b = half_of(loop_.screws(), length_, {at(5), at(4), at(3)}, -1, right);
           if (a.moment < 0 || b.moment < 0) continue;
           const double least = std::min(a.moment, b.moment), most = std::max(a.moment, b.moment);
-          // Both, or else one of them.
+          // Both pairs are apart, or else one.
           const double worth = least > meets ? 1 + least : most > meets ? most / (1 + most) : -1;
           if (worth <= best) continue;
           best = worth;

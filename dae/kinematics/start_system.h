@@ -1,8 +1,8 @@
 #pragma once
 // The start G(x) = 0 of a homotopy (homotopy.h): equations of the degrees of F, each a product of
-// linear forms, one group of variables each, whose coefficients are random on the unit circle. A
-// solution makes one factor of every equation zero, as many of each group as it has dimensions: it
-// is that of linear equations, group by group.
+// linear forms, one group of variables each, with random coefficients on the unit circle. A
+// solution makes one factor of every equation zero, as many of each group as its dimension: it
+// solves linear equations, group by group.
 
 #include <momenta/dae/kinematics/polynomial_system.h>
 
@@ -12,7 +12,7 @@
 
 namespace momenta {
 
-/// Random numbers on the unit circle, one after the other.
+/// Random numbers on the unit circle.
 class UnitCircle {
  public:
   explicit UnitCircle(std::uint64_t seed) : seed_(seed) {}
@@ -24,11 +24,11 @@ class UnitCircle {
 
 class StartSystem {
  public:
-  /// Of these degrees; `f` lives as long. O(Bézout number of f)
+  /// G with the degrees of `f`, which must outlive it. O(Bézout number of f)
   StartSystem(const PolynomialSystem& f, UnitCircle& circle);
-  /// How many solutions there are, the Bézout number.
+  /// Number of solutions, the Bézout number.
   std::size_t solutions() const { return choices_.size(); }
-  /// One of them, each group of length one (variables).
+  /// A solution, each group of length one (variables).
   Eigen::VectorXcd solution(std::size_t number) const;
   /// G (n) and its derivatives (n × variables).
   void evaluate(const Eigen::VectorXcd& x, Eigen::VectorXcd& values,
@@ -44,7 +44,7 @@ class StartSystem {
 
   const PolynomialSystem& f_;
   std::vector<std::vector<Form>> forms_;
-  std::vector<std::vector<std::size_t>> choices_;  ///< of each solution, the factors that vanish
+  std::vector<std::vector<std::size_t>> choices_;  ///< vanishing factors of each solution
 };
 
 }  // namespace momenta

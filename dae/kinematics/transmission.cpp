@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::VectorXd;
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double balanced = 1e-9;  // what of the unit effort may be left, in units
-constexpr double whole = 1e-6;     // which part of the power may take another way than B
-/// Singular directions of the balance, beside the largest: of redundant equations and dead points.
+constexpr double balanced = 1e-9;  // largest rest of the unit effort, in units
+constexpr double whole = 1e-6;     // part of the power that may bypass B
+/// Relative singular values of the balance at redundant equations and dead points.
 constexpr double balance_pivots = 1e-11;
 
-/// The joint that has this rate.
+/// The joint with this rate.
 const JointSpec& joint_with(const Mechanism& mechanism, int u, const std::string& output) {
   for (const JointPlace& place : joint_places(mechanism))
     if (std::find(place.u.begin(), place.u.end(), u) != place.u.end())
@@ -68,7 +68,7 @@ Transmission::Transmission(const Mechanism& mechanism, double t, const std::stri
   joint_ = joint.name;
   mechanism_ = std::make_unique<Mechanism>(
       with_contacts(mechanism.scene(), joint.child, joint.name, contacts_), mechanism.options());
-  // Reactions of joints stand in tree order, by name.
+  // Reactions list joints in tree order, by name.
   const std::vector<JointPlace> places = joint_places(*mechanism_);
   for (Contact& contact : contacts_)
     for (std::size_t i = 0; i < places.size() && !contact.is_loop; ++i)
@@ -83,7 +83,7 @@ Transmission::Transmission(const Mechanism& mechanism, double t, const std::stri
 VectorXd Transmission::multipliers(const VectorXd& q) {
   const int m = mechanism_->m();
   balance_.setZero();
-  loops_->gap(t_, q);  // places it
+  loops_->gap(t_, q);  // places the loops at q
   const std::vector<double> entries = loops_->jacobian();
   for (std::size_t k = 0; k < entries.size(); ++k)
     balance_(loops_->pattern()[k].column, loops_->pattern()[k].row) = entries[k];
@@ -107,7 +107,7 @@ Transmitting Transmission::at(const VectorXd& q) {
   if (lambda.size() == 0) return found;
   const VectorXd rest = VectorXd::Zero(mechanism_->nv());
   const VectorXd no_lambda = VectorXd::Zero(lambda.size());
-  // Wrenches are linear in λ: the weights and springs of the scene are in both.
+  // Wrenches are linear in λ: a difference removes the weights and springs of the scene.
   wrenches_->move(t_, q.data(), rest.data(), rest.data(), no_lambda.data());
   const Reactions without = wrenches_->reactions();
   wrenches_->move(t_, q.data(), rest.data(), rest.data(), lambda.data());
@@ -125,7 +125,7 @@ Transmitting Transmission::at(const VectorXd& q) {
   look(with.joints, without.joints);
   look(with.loops, without.loops);
 
-  // Places and velocities of the contacts, x y z and ẋ ẏ ż of each, while the output has rate 1.
+  // Positions and velocities of the contacts, x y z and ẋ ẏ ż each, while the output has rate 1.
   Evaluation<double>& e = loops_->evaluation();
   VectorXd rate = rest;
   rate[output_u_] = 1;
@@ -139,7 +139,7 @@ Transmitting Transmission::at(const VectorXd& q) {
     const Eigen::Vector3d force = a.force - b.force;
     const Eigen::Vector3d velocity(markers[6 * contact.marker + 3], markers[6 * contact.marker + 4],
                                    markers[6 * contact.marker + 5]);
-    const double power = std::abs(force.dot(velocity));  // of 1, the output's
+    const double power = std::abs(force.dot(velocity));  // part of the output's power 1
     if (std::abs(power - 1) > whole) continue;
     found.angle = std::asin(std::min(1.0, power / (force.norm() * velocity.norm())));
   }

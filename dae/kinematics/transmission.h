@@ -1,12 +1,11 @@
 #pragma once
-// How well a pose passes force to an output, by statics without masses and forces of its own. With
-// a unit effort on the output coordinate o, the swept coordinates c and the held ones h taking what
-// it needs,
+// Passing of force to an output at a pose, by statics without masses and applied forces. With a
+// unit effort on the output coordinate o, held by the swept coordinates c and the held ones h,
 //
 //   Φ_qᵀ λ + E_cᵀ τ_c + E_hᵀ τ_h = e_o
 //
-// has a solution wherever the input can hold the output: at its dead points it has none. λ gives
-// the forces of all joints and loops. Where the output link takes the whole force f at one point B,
+// has a solution where the input can hold the output, so not at its dead points. λ gives the forces
+// of all joints and loops. Where the output link takes the whole force f at one point B,
 //
 //   sin μ = |f·v_B| / (|f| |v_B|),      v_B of B while the output has rate 1 and its base rests:
 //
@@ -30,34 +29,35 @@
 
 namespace momenta {
 
-/// What a pose passes to the output.
+/// Transmission of a pose.
 struct Transmitting {
-  double angle;        ///< μ [rad], 0 to π/2; NaN where no one point takes the whole force
+  double angle;        ///< μ [rad], 0 to π/2; NaN where no single point takes the whole force
   double joint_force;  ///< largest force for a unit effort [1/m of an angle, 1 of a slide]; NaN:
                        ///< infinite
-  std::string where;   ///< of which joint or loop
+  std::string where;   ///< joint or loop with that force
 };
 
 class Transmission {
  public:
-  /// `output`: a coordinate, as coordinate_named takes it; `inputs`: places in u of the swept
+  /// `output`: a coordinate, as in coordinate_named(); `inputs`: places in u of the swept
   /// coordinates. Drives stand at t [s]. Makes a mechanism of its own.
-  /// @throws SceneError where the output is not known or is one of the inputs
+  /// @throws SceneError where the output is unknown or an input
   Transmission(const Mechanism& mechanism, double t, const std::string& output,
                const std::vector<int>& inputs, std::vector<HeldCoordinate> held);
 
   /// Place of the output in q.
   int output() const { return output_q_; }
-  /// At q (nq), loops closed. Cost: one dense least-squares solution of nv rows, two wrench sweeps.
+  /// Transmission at q (nq), loops closed. Cost: one dense least-squares solution of nv rows, two
+  /// wrench sweeps.
   Transmitting at(const Eigen::VectorXd& q);
 
  private:
-  /// A joint or loop of the output link other than the output's own: the point of the link where it
-  /// acts, a marker of the mechanism.
+  /// A joint or loop of the output link, not the output's own, with its point on the link, a marker
+  /// of the mechanism.
   struct Contact {
     std::string name;
     bool is_loop = false;
-    std::size_t place = 0;  ///< among the joints or loops of Reactions
+    std::size_t place = 0;  ///< among joints or loops of Reactions
     std::size_t marker = 0;
   };
   static Scene with_contacts(Scene scene, const std::string& link, const std::string& joint,
@@ -69,7 +69,7 @@ class Transmission {
   int output_q_ = 0, output_u_ = 0;
   std::vector<int> inputs_;
   std::vector<HeldCoordinate> held_;
-  std::string joint_;  ///< of the output
+  std::string joint_;  ///< joint of the output
   std::unique_ptr<Mechanism> mechanism_;
   std::unique_ptr<ScaledLoops> loops_;
   std::unique_ptr<WrenchSweep> wrenches_;

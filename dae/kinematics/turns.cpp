@@ -11,14 +11,14 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double within_rounding = 1e-9;  // of squared lengths, beside that of v
+constexpr double within_rounding = 1e-9;  // tolerance of squared lengths, relative to that of v
 
-/// From u to v about an axis.
+/// Angle from u to v about an axis.
 double angle_about(const Vector3d& axis, const Vector3d& u, const Vector3d& v) {
   return std::atan2(axis.dot(u.cross(v)), u.dot(v) - axis.dot(u) * axis.dot(v));
 }
 
-/// α and β of both solutions; none where there are none.
+/// α and β of both solutions, if any.
 std::vector<std::array<double, 2>> both_pairs(const Vector3d& a, const Vector3d& b,
                                               const Vector3d& v, const Vector3d& to) {
   const double c = a.dot(b), across = 1 - c * c, on_a = to.dot(a), on_b = v.dot(b),

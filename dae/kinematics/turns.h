@@ -8,9 +8,9 @@
 //   c = a·b,   x = (v'·a − c v·b)/(1 − c²),   y = (v·b − c v'·a)/(1 − c²),
 //   z² |a × b|² = v² − x² − y² − 2 c x y
 //
-// z and −z are two solutions; where z² < 0 there is none. Three turns R(a, α) R(b, β) R(c, γ) = Q
-// are two that take c to Q c, and what is left, about c. Of the two solutions the one is taken
-// whose angles are smaller, Σ |α|.
+// z and −z are two solutions; z² < 0 has none. Three turns R(a, α) R(b, β) R(c, γ) = Q are two that
+// take c to Q c, and the rest about c. Of the two solutions the one with smaller angles, Σ |α|, is
+// taken.
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -18,20 +18,20 @@
 
 namespace momenta {
 
-/// The turns about two lines, one after the other; none where there are none.
+/// The turns about two lines, in order; none without a solution.
 /// @pre |v| = |v'|, a and b not parallel
 std::optional<std::vector<Eigen::Quaterniond>> turns_that_take(const Eigen::Vector3d& a,
                                                                const Eigen::Vector3d& b,
                                                                const Eigen::Vector3d& v,
                                                                const Eigen::Vector3d& to);
 
-/// The turns about three. @pre neither a and b nor b and c parallel
+/// The turns about three lines. @pre neither a and b nor b and c parallel
 std::optional<std::vector<Eigen::Quaterniond>> turns_that_make(const Eigen::Vector3d& a,
                                                                const Eigen::Vector3d& b,
                                                                const Eigen::Vector3d& c,
                                                                const Eigen::Quaterniond& q);
 
-/// The displacement that turns about a centre.
+/// Displacement of a turn about a centre.
 inline Eigen::Isometry3d turned_about(const Eigen::Vector3d& centre,
                                       const Eigen::Quaterniond& turn) {
   Eigen::Isometry3d d = Eigen::Isometry3d::Identity();

@@ -12,9 +12,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double least_ritz = 1e-8;  // of the largest value: rounding
+constexpr double least_ritz = 1e-8;  // relative: rounding
 
-/// The sum of the eigenvectors of negative value.
+/// Sum of eigenvectors of negative eigenvalues.
 VectorXd negative_of_symmetric(const MatrixXd& T) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (T + T.transpose()));
   const double dust = least_ritz * ritz.eigenvalues().cwiseAbs().maxCoeff();
@@ -24,7 +24,7 @@ VectorXd negative_of_symmetric(const MatrixXd& T) {
   return sum;
 }
 
-/// The same, of real values alone.
+/// The same for real eigenvalues alone.
 VectorXd negative_of(const MatrixXd& T) {
   if (!(T - T.transpose()).isZero(least_ritz * T.cwiseAbs().maxCoeff())) {
     const Eigen::EigenSolver<MatrixXd> ritz(T);
@@ -67,8 +67,8 @@ VectorXd DownwardWays::stiffness(double t, const VectorXd& y) {
   return result;
 }
 
-/// The sum of the Ritz vectors of negative value, in the space of random, image, image of image, …;
-/// `image` takes y and M y, and is self-adjoint in M where K is symmetric; an empty one ends it.
+/// Sum of Ritz vectors of negative value, in the Krylov space of a random vector. `image` takes y
+/// and M y, and is self-adjoint in M where K is symmetric; an empty result ends the space.
 template <class Image>
 VectorXd DownwardWays::negative(int steps, bool symmetric, Image&& image) {
   const int nv = mechanism_.nv();
@@ -90,7 +90,7 @@ VectorXd DownwardWays::negative(int steps, bool symmetric, Image&& image) {
     p = poses_.momentum(next);
     const double size = std::sqrt(std::max(0.0, next.dot(p)));
     scale = count == 0 ? 0 : std::max(scale, whole);
-    if (!(size > 1e-10 * scale)) break;  // nothing new
+    if (!(size > 1e-10 * scale)) break;  // invariant space
     Y.col(count) = next / size;
     P.col(count) = p / size;
     next = image(VectorXd(Y.col(count)), VectorXd(P.col(count)));

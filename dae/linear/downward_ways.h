@@ -1,13 +1,12 @@
 #pragma once
-// Ways along which the potential curves downwards: eigenvectors of negative κ in
+// Directions along which the potential curves downwards: eigenvectors of negative κ in
 //
 //   K y = κ M y,   Φ_q y = 0
 //
-// by a few steps of Lanczos' method in the metric M, on M⁻¹K, which brings out κ far below zero,
-// and, where there are none, on (K + μM)⁻¹M, which brings out those near it. Where K is not
-// symmetric, real κ < 0 by Arnoldi's method: no pair of complex κ leads straight away. Products
-// with K by dual numbers, with M⁻¹ by the solver of the loops, O(bodies) each. Source: Parlett, The
-// Symmetric Eigenvalue Problem, chapter 13.
+// by a few steps of Lanczos' method in the metric M, on M⁻¹K for κ far below zero and, without any,
+// on (K + μM)⁻¹M for κ near it. Where K is not symmetric, real κ < 0 by Arnoldi's method: no pair
+// of complex κ leads straight away. Products with K by dual numbers, with M⁻¹ by the solver of the
+// loops, O(bodies) each. Source: Parlett, The Symmetric Eigenvalue Problem, chapter 13.
 
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/pose_motion.h>
@@ -19,8 +18,8 @@ class DownwardWays {
   /// `poses` must outlive it.
   DownwardWays(const Mechanism& mechanism, PoseMotion& poses);
 
-  /// Their sum, each with yᵀMy = 1 (nv), at (t, q) with λ; empty where none is found. `factored`:
-  /// K + μM there, with a μ that is small. `symmetric`: K is, there on Φ_q y = 0
+  /// Sum of the directions, each with yᵀMy = 1 (nv), at (t, q) with λ; empty: none. `factored`: K +
+  /// μM there, μ small. `symmetric`: K is, on Φ_q y = 0
   Eigen::VectorXd find(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
                        LocalPencil& factored, bool symmetric);
 

@@ -18,11 +18,11 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int most_steps = 1000, steps_a_rate = 4, most_halvings = 30, most_polishings = 4;
-constexpr double balanced = 1e-8;       // forces left, relative: an equilibrium
-constexpr double at_rest = 1e-10;       // forces left, relative: good enough to be polished
+constexpr double balanced = 1e-8;       // relative force left at an equilibrium
+constexpr double at_rest = 1e-10;       // relative force left, to be polished
 constexpr double longest_step = 0.4;    // [rad or lengths of the scene]
-constexpr double gone = 1e3;            // lengths of the scene: it falls
-constexpr double neutral_floor = 1e-9;  // least μ against the natural one: keeps neutral directions
+constexpr double gone = 1e3;            // lengths of the scene: falling
+constexpr double neutral_floor = 1e-9;  // least relative μ: keeps neutral directions
 
 double whole_mass(const Mechanism& mechanism) {
   double mass = 0;
@@ -30,9 +30,8 @@ double whole_mass(const Mechanism& mechanism) {
   return mass;
 }
 
-/// M_ii (nv) up to which a joint moves no mass worth the name, beside that of a body of the mean
-/// size. It has no frequency of its own: the loops move it, and what it is left with is the
-/// rounding of their forces.
+/// Largest M_ii (nv) of a joint without mass, relative to a body of mean size. It has no frequency
+/// of its own: loops move it, and its force is their rounding.
 VectorXd massless_up_to(const Mechanism& mechanism) {
   constexpr double part = 1e-9;
   const auto bodies =
@@ -46,7 +45,7 @@ VectorXd massless_up_to(const Mechanism& mechanism) {
   return least;
 }
 
-/// Of a Lagrangian: the force on a coordinate where it stands, and what a rate of 1/s weighs.
+/// Lagrangian: forces on coordinates at rest, and the weight of a rate of 1/s.
 VectorXd formula_scales(const Mechanism& mechanism, Evaluation<double>& e) {
   VectorXd scale(mechanism.nv()), force(mechanism.nv());
   e.mass_diagonal(scale.data());
@@ -132,7 +131,7 @@ class Searcher {
   double measure(const Pose& p) const {
     return p.force.size() > 0 ? p.force.cwiseQuotient(scale_).cwiseAbs().maxCoeff() : 0;
   }
-  /// Force over inertia of the joint where that is most [1/s²].
+  /// Largest force over inertia of a joint [1/s²].
   double natural(double t, const VectorXd& q) {
     VectorXd inertia(mechanism_.nv());
     e_.place(t, q.data());
@@ -145,7 +144,6 @@ class Searcher {
   }
   double floor() const { return neutral_floor * natural_; }
 
-  /// Loops that a running drive moves allow no rest.
   void refuse_moving_loops(double t, const Pose& p) {
     if (mechanism_.m() == 0 || !mechanism_.plan().drives) return;
     VectorXd rate(mechanism_.m());
@@ -160,14 +158,14 @@ class Searcher {
                      "mechanism as a whole, or to be held");
   }
 
-  /// Loops give way, by 1e-8 of what holds them: redundant ones then do no harm.
+  /// Softens loops by 1e-8 of their stiffness: redundant ones then do no harm.
   void soften(double t, const VectorXd& q) {
     if (mechanism_.m() == 0) return;
     e_.place(t, q.data());
     scales_ = row_scales(mechanism_, e_);
   }
 
-  /// δ at μ, of this pose; empty where the matrix is singular.
+  /// δ at μ; empty where the matrix is singular.
   VectorXd step(double t, const Pose& p, double mu) {
     if (!scales_.empty()) {
       std::vector<double> compliance = scales_;
@@ -184,14 +182,13 @@ class Searcher {
     return part_ * delta;
   }
 
-  /// How far V − T₀ falls from here to there; of forces without a potential, the work that all of
-  /// them do on the way, by the trapezoidal rule. What brings the pose back to Φ = 0 lies across
-  /// the forces left, and does none.
+  /// Fall of V − T₀; with forces without a potential the work of all forces, by the trapezoidal
+  /// rule. The way back to Φ = 0 lies across the forces left, and does no work.
   double fall(const Pose& here, const Pose& there, const VectorXd& delta) const {
     return potential_ ? here.merit - there.merit : 0.5 * delta.dot(here.force + there.force);
   }
 
-  /// One step downhill. μ follows how well V − T₀ falls as its second-order part foretells.
+  /// A step downhill. μ follows how well K predicts the fall of V − T₀.
   bool settle(double t, Pose& here) {
     constexpr int most_tries = 60;
     constexpr double least_share = 0.05, poor = 0.25, good = 0.75;
@@ -202,7 +199,7 @@ class Searcher {
       if (delta.size() == 0 || !poses_.move(t, here.q, delta, q)) continue;
       const double work = delta.dot(here.force);
       if (!(work > 0)) continue;
-      // δᵀKδ follows from the step's own equation, shortened to `part_` of it.
+      // δᵀKδ by the step's own equation, shortened by `part_`.
       e_.place(t, here.q.data());
       const double bent = part_ * work - mu_ * delta.dot(poses_.momentum(delta));
       Pose next = look(t, q);
@@ -218,7 +215,7 @@ class Searcher {
     return false;
   }
 
-  /// From a pose where the potential curves downwards: a little along the ways it does so.
+  /// Moves a little from a saddle, along the directions of downward curvature.
   void leave_saddle(double t, Pose& here) {
     constexpr double aside = 0.05;  // [rad or lengths of the scene]
     if (step(t, here, floor()).size() == 0) return;
@@ -290,10 +287,10 @@ class Searcher {
   double length_;
   bool potential_;
   VectorXd rest_, unit_, scale_;
-  std::vector<double> scales_;  ///< of the loops' rows
+  std::vector<double> scales_;  ///< scales of the loops' rows
   double natural_ = 1;          ///< [1/s²]
   double mu_ = 1, step_ = 0;
-  double part_ = 1;  ///< of the last step that was taken
+  double part_ = 1;  ///< part_ of the last step
 };
 
 }  // namespace
@@ -326,7 +323,7 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
     torque += f.kind == "torque" ? std::abs(f.value) : f.torque.norm();
   }
   torque += e.formula_size();
-  force += 2 * e.kinetic() / length;  // of running drives
+  force += 2 * e.kinetic() / length;  // energy of running drives
   for (const JointSpec& j : scene.joints) torque += std::abs(j.stiffness) * (1 + std::abs(j.rest));
   VectorXd scale(mechanism.nv());
   const VectorXd massless = massless_up_to(mechanism);

@@ -1,11 +1,10 @@
 #pragma once
-// A pose at which the mechanism stays when it is let go at rest:
+// A pose at which the mechanism stays when released at rest:
 //
 //   r(q) + Φ_qᵀλ = 0,   Φ(q) = 0          r: (1a) at u = u̇ = 0
 //
-// Judged by letting go: λ and u̇ are those of (3) at rest, and M u̇ is what is left of the forces.
-// Where drives run, this is a relative equilibrium, of V − T₀ with T₀ the kinetic energy of the
-// prescribed motion alone.
+// Test of a pose: λ and u̇ are those of (3) at rest, and M u̇ is the force left. With running drives
+// it is a relative equilibrium, of V − T₀ with T₀ the kinetic energy of prescribed motion alone.
 //
 // Each step solves, with the exact second derivatives K of V + λ·Φ,
 //
@@ -32,31 +31,31 @@ enum class Search { settle, nearest, start, steady };
 
 struct Equilibrium {
   double t = 0;
-  Eigen::VectorXd q, lambda;  ///< nq; m, the loops' forces there (one choice of them if redundant)
+  Eigen::VectorXd q, lambda;  ///< nq; m, one choice of the loops' forces
   int steps = 0;
-  double left = 0;       ///< largest force left, relative to what acts on that joint
-  double moved = 0;      ///< largest change of a coordinate since the start [rad or m]
-  double last_step = 0;  ///< [rad or m]
+  double left = 0;   ///< largest, relative to the forces on its joint
+  double moved = 0;  ///< largest change of a coordinate since the start [rad or m]
+  double last_step = 0;
   double potential = 0;  ///< V [J]
-  double pivot = 0;      ///< singular values of Φ_q that count are above it (contradiction.h)
+  double pivot = 0;      ///< singular values of Φ_q above it count
 };
 
-/// From a consistent start, whose rates do not matter. `settle` goes on from a saddle that it came
-/// to, not from one that it started at.
-/// @throws SceneError naming the joint at which most force is left, or the drive that does not
-/// allow rest.
+/// Starts from a consistent pose at any rates. `settle` leaves a saddle that it came to, not one
+/// that it started at.
+/// @throws SceneError with the joint of the largest force left, or the drive that does not allow
+/// rest.
 Equilibrium find_equilibrium(const Mechanism& mechanism, const Start& start, Search search);
 
-/// The same from a pose turned by `way` (nv), brought back to Φ = 0.
+/// The same from a pose moved by `way` (nv), back on Φ = 0.
 Equilibrium settle_from(const Mechanism& mechanism, const Equilibrium& saddle,
                         const Eigen::VectorXd& way);
 
-/// Whether all forces on it have a potential: no wrench that turns with a body, no constant torque
-/// in space.
+/// Whether all forces have a potential: no wrench that turns with a body, no constant torque in
+/// space.
 bool has_potential(const Mechanism& mechanism);
 
-/// Natural size of each rate's force (nv) at the placed pose, moved at rest: what rounding and
-/// residuals are measured by [N m or N].
+/// Natural size of each rate's force (nv) at the placed pose at rest, for rounding and residuals [N
+/// m or N].
 Eigen::VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e);
 
 /// 1 for turns, the length of the scene for shifts (nv).

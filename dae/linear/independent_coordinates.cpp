@@ -19,8 +19,7 @@ std::vector<int> without(const std::vector<int>& all, const std::vector<int>& so
   return left;
 }
 
-/// Rows of a that stay when those that follow from the others are left out, nonholonomic ones
-/// first; `idle`: forces of them that move nothing.
+/// Independent rows of a, nonholonomic ones first; `idle`: forces of rows that move nothing.
 std::vector<int> basis_of_rows(const MatrixXd& a, const std::vector<int>& rows,
                                const std::vector<bool>& nonholonomic, double pivot,
                                RankAndIdle& found) {
@@ -34,7 +33,7 @@ std::vector<int> basis_of_rows(const MatrixXd& a, const std::vector<int>& rows,
   return without(rows, dependent);
 }
 
-/// The first `count` pivots of a QR decomposition, among these columns.
+/// First `count` pivots of a QR decomposition, among these columns.
 std::vector<int> pivots(const MatrixXd& a, const std::vector<int>& columns, std::size_t count) {
   std::vector<int> chosen;
   if (count == 0) return chosen;
@@ -46,7 +45,7 @@ std::vector<int> pivots(const MatrixXd& a, const std::vector<int>& columns, std:
   return chosen;
 }
 
-/// A drive may be varied by itself only if loops can follow: νᵀΦ_q = 0 at free rates and at its.
+/// Drives vary alone only if loops follow: νᵀΦ_q = 0 at free rates and at theirs.
 void expect_followed(const OperatingPoint& at, const MatrixXd& a, const MatrixXd& left) {
   if (left.cols() == 0 || at.driven.empty()) return;
   const MatrixXd against = left.transpose() * a(Eigen::all, at.driven);
@@ -63,7 +62,7 @@ void expect_followed(const OperatingPoint& at, const MatrixXd& a, const MatrixXd
       "is no dead point");
 }
 
-/// Those drives of loops that the other loops follow when they are varied: νᵀΦ_f = 0.
+/// Drives that the other loops follow: νᵀΦ_f = 0.
 std::vector<int> followed(const OperatingPoint& at, const Eigen::VectorXd& row_factor,
                           const MatrixXd& left) {
   std::vector<int> drives = drives_of_loops_that_vary(at.freed->scene());
@@ -142,7 +141,6 @@ IndependentCoordinates independent_coordinates(const OperatingPoint& at,
                  : 0;
   }
   c.left_out = without(all, c.rows);
-  // Rates.
   const std::size_t positions = c.position_rows.size();
   std::vector<int> dependent = named.empty()
                                    ? pivots(a(c.position_rows, Eigen::all), at.free, positions)

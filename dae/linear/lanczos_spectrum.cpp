@@ -17,10 +17,9 @@ using Eigen::VectorXd;
 using ConstMap = Map<const VectorXd>;
 
 constexpr int most_restarts = 300;
-constexpr double promised = 1e-11;  // of eigenvalues of the inverse
-constexpr double zero = 1e-8;       // of the shift: what is left of a rigid mode's s²
+constexpr double promised = 1e-11;  // relative, of the inverse's eigenvalues
+constexpr double zero = 1e-8;       // s² of a rigid mode, relative to the shift
 
-/// M, C and the inverse, at the equilibrium.
 class Products {
  public:
   Products(const Mechanism& mechanism, const Equilibrium& at, const std::vector<int>& dependent)
@@ -66,7 +65,7 @@ class Products {
     for (std::size_t i = 0; i < u.size(); ++i) result[static_cast<long>(i)] = r[i].b[0];
     return result;
   }
-  /// Of all joints the smallest natural 1/s²: about that of the lowest modes.
+  /// Smallest natural 1/s² of joints, about that of the lowest modes.
   double least_natural() {
     const VectorXd rest = VectorXd::Zero(size());
     VectorXd inertia(size());
@@ -86,7 +85,7 @@ class Products {
   LocalPencil pencil_;
 };
 
-/// What Spectra asks of (K − τM)⁻¹ and of M.
+/// (K − τM)⁻¹ and M, as Spectra takes them.
 struct Inverse {
   using Scalar = double;
   Products& products;
@@ -189,7 +188,7 @@ void lanczos_spectrum(const Mechanism& mechanism, const Equilibrium& at, int cou
                       Spectrum& found) {
   Products products(mechanism, at, found.dependent_rows);
   count = std::clamp(count, 1, (found.mobility - 3) / 2);
-  // C is zero where no entry of it is: along one vector that leaves no rate out.
+  // C is zero where no entry is: one vector with all rates tells.
   found.conservative = has_potential(mechanism) &&
                        products.damping(VectorXd::LinSpaced(products.size(), 1, 2)).isZero(0);
   found.complete = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Names of a linear model's states, inputs and outputs, and how they are chosen by name.
+// Columns of a linear model's states, inputs and outputs, and their choice by name.
 
 #include <momenta/dae/linear/independent_coordinates.h>
 
@@ -8,7 +8,6 @@
 
 namespace momenta {
 
-/// A column and the group that names it too.
 struct GroupedColumn {
   Column column;
   std::string group;
@@ -16,17 +15,17 @@ struct GroupedColumn {
 
 struct LinearColumns {
   std::vector<Column> minimal, descriptor;     ///< states
-  std::vector<GroupedColumn> inputs, outputs;  ///< all there are
-  std::vector<std::string> left_out;           ///< rows, in words
+  std::vector<GroupedColumn> inputs, outputs;  ///< all
+  std::vector<std::string> left_out;           ///< rows in words
   std::vector<int> free;                       ///< places in u of the freed mechanism
 };
 
-/// In the order in which linear_model() has them.
+/// Columns in the order of linear_model().
 LinearColumns linear_columns(const OperatingPoint& at, const IndependentCoordinates& chosen);
 
-/// Places of the columns with these names, in their order: of the column, of what stands before the
-/// last point, or of a group. None: all. @throws SceneError for a name that is not known or chosen
-/// twice; `what`: "input"
+/// Places of columns by name, in the order of names: the column's, its part before the last point,
+/// or a group's. No names: all. @throws SceneError for a name unknown or chosen twice; `what`:
+/// "input"
 std::vector<int> picked(const std::vector<GroupedColumn>& columns,
                         const std::vector<std::string>& names, const std::string& what);
 

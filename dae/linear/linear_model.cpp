@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 using Lu = Eigen::PartialPivLU<MatrixXd>;
 
 /// δ, δu, δu̇ (rates of the freed mechanism, then drives of loops), δλ (all rows) and τ as linear
-/// functions, by row, of what the columns are: x, then w.
+/// functions, by row, of the columns x, then w.
 struct Functions {
   MatrixXd delta, v, a, lambda, tau;
   Functions(Eigen::Index n, Eigen::Index m, Eigen::Index columns)
@@ -127,7 +127,7 @@ class Eliminated {
     return f;
   }
 
-  /// y of the functions, and at the state itself, in the order of linear_outputs().
+  /// y, in the order of linear_outputs(), as functions and at the state.
   MatrixXd outputs(const Functions& f) const {
     const Eigen::Index markers = l_.markers_by_poses.rows();
     std::vector<int> unique;
@@ -165,8 +165,8 @@ class Eliminated {
     }
   }
 
-  /// Columns of drives of loops behind those of rates: each is a coordinate f with δ, δu and δu̇
-  /// given. Their rows of (1a) are nobody's.
+  /// Columns of drives of loops: each is a coordinate f with given δ, δu and δu̇. Their rows of (1a)
+  /// are unused.
   void append_loop_drives() {
     const Eigen::Index more = size(c_.loop_drives);
     const LoopDriveColumns columns =
@@ -200,7 +200,7 @@ class Eliminated {
     return l_.markers_by_poses * f.delta + l_.markers_by_rates * f.v;
   }
 
-  /// u̇ and λ: of free rates by N and what f̈ asks for, as in minimal().
+  /// u̇ and λ: u̇ of free rates by N and f̈, as in minimal().
   void solve_state() {
     const int m = mechanism_.m();
     udot_ = VectorXd::Zero(nv_);
@@ -233,7 +233,7 @@ class Eliminated {
     }
     const Eigen::LLT<MatrixXd> cholesky(N.transpose() * l.M * N);
     if (cholesky.info() != Eigen::Success) refuse_massless();
-    // Once, and once more for the digits.
+    // Solution and refinement.
     for (int k = 0; k < 2; ++k) {
       if (!c_.rows.empty()) {
         udot_(c_.dependent) -= lu.solve(VectorXd(second(c_.rows)));
@@ -251,13 +251,13 @@ class Eliminated {
   IndependentCoordinates c_;
   const Mechanism& mechanism_;
   Eigen::Index nv_, places_ = 0;
-  std::vector<int> drives_;  ///< places of those that drives give: joints, then loops
+  std::vector<int> drives_;  ///< joints, then loops
   Eigen::Index inputs_ = 0;
   VectorXd udot_, lambda_;
   StateLinearisation l_;
 };
 
-/// Singular values of Φ_q that count are above `pivot`; 0: as independent_coordinates() judges.
+/// Singular values of Φ_q above `pivot` count; 0: as in independent_coordinates().
 LinearModel model_at(const Mechanism& mechanism, const Start& start, const LinearRequest& request,
                      double pivot) {
   refuse_bearings(mechanism.scene(), "linearisation");
@@ -282,7 +282,7 @@ LinearModel model_at(const Mechanism& mechanism, const Start& start, const Linea
   const std::vector<int> w = picked(columns.inputs, request.inputs, "input"),
                          y = picked(columns.outputs, request.outputs, "output");
   const bool minimal = request.kind == LinearRequest::Kind::minimal;
-  // The minimal system gives the poles of both.
+  // Poles of both kinds.
   MatrixXd right, E;
   Functions f = model.minimal(right);
   const Eigen::Index least = right.rows();

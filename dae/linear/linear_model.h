@@ -11,9 +11,9 @@
 //   M δu̇ + C δu + K δ + Aᵀ δλ = τ                          (1a)
 //   Φ_q δ = 0,   A δu + V δ = 0,   A δu̇ + C_a δu + K_a δ = 0    Φ, Φ̇ and Φ̈ along the motion
 //
-// The last three hold at once: about a motion Φ_q changes, so that the second is not the first
-// differentiated with constant coefficients. Dependent rates (D) are those that the loops give, I
-// the others; of the rows one basis is kept.
+// The last three hold at once: about a motion Φ_q changes, so the second is not the first
+// differentiated with constant coefficients. Loops give the dependent rates (D), I are the others;
+// one basis of the rows is kept.
 //
 //   descriptor   x = (δ, δu, δu̇, δλ). Every equation stands as above; kinematics and d/dt δu = δu̇
 //                are asked of I alone (dummy derivatives), so the index is 1, the finite
@@ -41,53 +41,51 @@
 
 namespace momenta {
 
-/// Which linear model.
 struct LinearRequest {
   /// Independent coordinates and rates alone, or all of them beside λ.
   enum class Kind { minimal, descriptor };
-  Kind kind = Kind::minimal;  ///< which of the two
-  /// Columns by name ("O.q"), by what stands before the last point ("O"), or one of the groups
-  /// efforts and drives. Empty: all.
+  Kind kind = Kind::minimal;
+  /// Columns by name ("O.q"), by its part before the last point ("O"), or by group: efforts,
+  /// drives. Empty: all.
   std::vector<std::string> inputs;
   /// Likewise; groups: coordinates, rates, accelerations, markers, efforts, multipliers.
   std::vector<std::string> outputs;
-  /// Coordinates taken for δ_I, "O.q"; empty: chosen. Those of rates are the same, or part of them.
+  /// Coordinates for δ_I, "O.q"; empty: chosen. Independent rates are the same, or part of them.
   std::vector<std::string> independent;
 };
 
-/// A linear model and the state it is of.
 struct LinearModel {
-  LinearRequest::Kind kind = LinearRequest::Kind::minimal;  ///< as asked for
-  std::string scene;                                        ///< its name
-  double t = 0;                                             ///< [s]
-  std::vector<Column> coordinates;                          ///< of q
-  std::vector<Column> rates;                                ///< of u
-  Eigen::VectorXd q;                                        ///< nq, the state
-  Eigen::VectorXd u;                                        ///< nv
-  Eigen::VectorXd udot;                                     ///< nv
-  std::vector<Column> states;                               ///< of x
-  std::vector<Column> inputs;                               ///< of w
-  std::vector<Column> outputs;                              ///< of y
-  Eigen::MatrixXd E;                                        ///< states × states
-  Eigen::MatrixXd A;                                        ///< states × states
-  Eigen::MatrixXd B;                                        ///< states × inputs
-  Eigen::MatrixXd C;                                        ///< outputs × states
-  Eigen::MatrixXd D;                                        ///< outputs × inputs
-  Eigen::VectorXcd poles;             ///< finite eigenvalues, by real part, the largest first [1/s]
-  std::vector<std::string> left_out;  ///< loop equations that follow from others
-  double kept = 0;  ///< smallest singular value of Φ_q over the largest; 0 without loops
+  LinearRequest::Kind kind = LinearRequest::Kind::minimal;
+  std::string scene;
+  double t = 0;                       ///< [s]
+  std::vector<Column> coordinates;    ///< names of q
+  std::vector<Column> rates;          ///< names of u
+  Eigen::VectorXd q;                  ///< nq
+  Eigen::VectorXd u;                  ///< nv
+  Eigen::VectorXd udot;               ///< nv
+  std::vector<Column> states;         ///< names of x
+  std::vector<Column> inputs;         ///< names of w
+  std::vector<Column> outputs;        ///< names of y
+  Eigen::MatrixXd E;                  ///< states × states
+  Eigen::MatrixXd A;                  ///< states × states
+  Eigen::MatrixXd B;                  ///< states × inputs
+  Eigen::MatrixXd C;                  ///< outputs × states
+  Eigen::MatrixXd D;                  ///< outputs × inputs
+  Eigen::VectorXcd poles;             ///< finite, by real part, the largest first [1/s]
+  std::vector<std::string> left_out;  ///< dependent loop equations
+  double kept = 0;                    ///< relative, least singular value of Φ_q; 0 without loops
 };
 
 inline constexpr int most_of_linear_model = 600;  ///< nv + m
 
-/// At a consistent state, whose `udot` and `lambda` do not matter. O((nv + m)³)
-/// @throws SceneError where the pose is singular or a drive asks what loops cannot follow (the loop
-/// equation), where something moves without inertia, a name is not known, the independent
-/// coordinates do not determine the pose, or numbers are not finite
+/// Takes a consistent state; its `udot` and `lambda` do not matter. O((nv + m)³)
+/// @throws SceneError where the pose is singular, loops cannot follow a drive (names the loop
+/// equation), something moves without inertia, a name is unknown, independent coordinates do not
+/// determine the pose, or numbers are not finite
 LinearModel linear_model(const Mechanism& mechanism, const Start& at,
                          const LinearRequest& request = {});
 
-/// About an equilibrium, at rest; which rows of Φ_q count is the equilibrium's own.
+/// The model at an equilibrium, with its own rows of Φ_q that count.
 LinearModel linear_model(const Mechanism& mechanism, const Equilibrium& at,
                          const LinearRequest& request = {});
 

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 constexpr int directions = 8;
 
-/// Derivatives of (r, Φ̇, Φ̈), and of markers, eight directions at a time.
+/// Derivatives of (r, Φ̇, Φ̈) and of markers, eight directions at a time.
 class Columns {
  public:
   Columns(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
@@ -37,7 +37,7 @@ class Columns {
 
   enum class By { poses, rates, accelerations };
 
-  /// Columns of ∂r, and of ∂Φ̇ and ∂Φ̈ where these are given.
+  /// Columns of ∂r; ∂Φ̇ and ∂Φ̈ unless null.
   void take(By by, MatrixXd& of_forces, MatrixXd* loops, MatrixXd* second = nullptr) {
     for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
       const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
@@ -54,7 +54,6 @@ class Columns {
     }
   }
 
-  /// Columns of markers' positions and velocities.
   void take_markers(MarkerMotion<Dual8>& markers, By by, MatrixXd& of_markers) {
     std::vector<Dual8> values(static_cast<std::size_t>(of_markers.rows()));
     for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
@@ -103,7 +102,7 @@ class Columns {
   std::vector<Dual8> place_, rate_, acceleration_, r_, lambda_, of_loops_;
 };
 
-/// B x: both derivatives along one direction each.
+/// B x, from both derivatives along one direction each.
 VectorXd turning(const Mechanism& mechanism, const Evaluation<double>& plain,
                  const Evaluation<Dual8>& dual, const VectorXd& q, const VectorXd& u,
                  const VectorXd& x) {

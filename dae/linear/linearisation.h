@@ -4,8 +4,8 @@
 //   q = q* ∘ exp δ,  u = δ̇:    M δ̈ + C δ̇ + K δ + Φ_qᵀ δλ = 0,   Φ_q δ = 0
 //   M = ∂r/∂u̇,  C = ∂r/∂u,  K = ∂r/∂δ at constant λ,   all at (q*, 0, 0, λ*)
 //
-// K has the geometric part Σ λ_i ∂(∇Φ_i)/∂δ in it: what the loops' forces do when they turn. All
-// are exact to rounding, by dual numbers. Derivation: docs/theory/small-motions.md.
+// K has the geometric part Σ λ_i ∂(∇Φ_i)/∂δ: loops' forces turn. All are exact to rounding, by dual
+// numbers. Derivation: docs/theory/small-motions.md.
 //
 // About a motion at constant rates u*, in axes that move along with it,
 //
@@ -13,10 +13,10 @@
 //   B δ: q̇ = H(q) u, H δ̇ = H δu + [∂(H u)/∂q] H δ − [∂(H δ)/∂q] H u;   zero where u = q̇
 //   V = ∂(A u − b)/∂δ
 //
-// A has the rows of all loops, nonholonomic ones too; all at (q*, u*, 0, λ*).
+// A has the rows of all loops, nonholonomic ones too; all matrices at (q*, u*, 0, λ*).
 //
-// About any state of a motion all are taken at (q*, u*, u̇*, λ*), and the rows of accelerations and
-// what the markers do stand beside them:
+// About any state of a motion all are taken at (q*, u*, u̇*, λ*), with rows of accelerations and
+// derivatives of markers beside them:
 //
 //   A δu̇ + C_a δu + K_a δ = 0,    C_a = ∂Φ̈/∂u,  K_a = ∂Φ̈/∂δ
 
@@ -40,11 +40,11 @@ struct MovingLinearisation : Linearisation {
 /// About a state of any motion.
 struct StateLinearisation : MovingLinearisation {
   Eigen::MatrixXd second_by_rates, second_by_poses;    ///< C_a X, K_a X, m × columns
-  Eigen::MatrixXd markers_by_rates, markers_by_poses;  ///< of positions and velocities, in the
-                                                       ///< order of Mechanism::marker_columns()
+  Eigen::MatrixXd markers_by_rates, markers_by_poses;  ///< in the order of
+                                                       ///< Mechanism::marker_columns()
 };
 
-/// Along the columns of X (nv × any number), at (t, q), u = u̇ = 0, with λ (m). Cost O(bodies) a
+/// Derivatives along X (nv × any number), at (t, q), u = u̇ = 0, with λ (m). Cost O(bodies) a
 /// column.
 Linearisation linearise(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                         const Eigen::VectorXd& lambda, const Eigen::MatrixXd& X);
@@ -59,7 +59,7 @@ StateLinearisation linearise_state(const Mechanism& mechanism, double t, const E
                                    const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
                                    const Eigen::VectorXd& lambda, const Eigen::MatrixXd& X);
 
-/// The scene with every drive held where it is at t = 0, and no velocity.
+/// Every drive held at its value for t = 0, at rest.
 Scene held_at_start(Scene scene);
 
 }  // namespace momenta

@@ -4,8 +4,8 @@
 //   ( K + c C + a M   Φ_qᵀ ) ( δ )   ( f )
 //   ( Φ_q             −E   ) ( ν ) = ( g )
 //
-// K, C and M of a chain of n bodies are full; the matrix that KLU factorises is not: it is that of
-// the sparse dual numbers of core/scalar/local_dual.h, evaluated at u = c δ, u̇ = a δ.
+// K, C and M of a chain are full, but KLU factorises the sparse matrix of the dual numbers of
+// core/scalar/local_dual.h, evaluated at u = c δ, u̇ = a δ.
 
 #include <momenta/dae/form/local_rows.h>
 #include <momenta/dae/mechanism.h>
@@ -21,12 +21,12 @@ class LocalPencil {
  public:
   explicit LocalPencil(const Mechanism& mechanism);
 
-  /// E (m), diagonal: loops that give way, so that redundant ones do no harm. Empty: none.
+  /// E (m), diagonal: loops give way, so that redundant ones do no harm. Empty: none.
   void soften(std::vector<double> compliance) { compliance_ = std::move(compliance); }
-  /// Loop equations left out, their ν zero: those that follow from others.
+  /// Leaves out loop equations; their ν is zero.
   void leave_out(const std::vector<int>& rows);
 
-  /// At (t, q) with λ (m). False where the matrix is singular or not finite. O(fill)
+  /// Factorises at (t, q) with λ (m). False where the matrix is singular or not finite. O(fill)
   bool factor(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda, double a,
               double c);
   /// f (nv) becomes δ, g (m) becomes ν.
@@ -40,7 +40,7 @@ class LocalPencil {
   std::vector<bool> out_;  ///< by loop equation
   Cuts cuts_;
   LocalRows rows_;
-  int version_ = 0;  ///< of the pattern in matrix_
+  int version_ = 0;  ///< version of the pattern in matrix_
   std::unique_ptr<NewtonMatrix<double>> matrix_;
   std::vector<double> work_;
 };

@@ -40,7 +40,7 @@ bool is_angle(const Scene& scene, const DriveSpec& drive) {
   }
 }
 
-/// The unit of a coupler's offset: rad where all its coordinates are angles.
+/// Whether a coupler's offset is in rad: all its coordinates are angles.
 bool couples_angles(const Scene& scene, const LoopSpec& loop) {
   return std::all_of(loop.joints.begin(), loop.joints.end(), [&](const std::string& name) {
     const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
@@ -49,7 +49,7 @@ bool couples_angles(const Scene& scene, const LoopSpec& loop) {
   });
 }
 
-/// f + x + ḟ (t − t₀) + f̈ (t − t₀)²/2: what the drive does at t₀, shifted.
+/// f + x + ḟ (t − t₀) + f̈ (t − t₀)²/2: the drive's motion at t₀, shifted.
 DriveSpec shifted(const DriveSpec& drive, double t, double x) {
   double f = 0, rate = 0, second = 0;
   MotionLaw(drive).evaluate(t, f, rate, second);
@@ -66,7 +66,7 @@ DriveSpec shifted(const DriveSpec& drive, double t, double x) {
   return other;
 }
 
-/// (Φ, Φ̇, Φ̈, Φ_qᵀλ + what does not depend on f), one below the other.
+/// (Φ, Φ̇, Φ̈, Φ_qᵀλ but for terms without f), one below the other.
 class Values {
  public:
   Values(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
@@ -110,7 +110,7 @@ class Values {
   const VectorXd &q_, &u_, &udot_, &lambda_;
 };
 
-/// By f of a length or of an offset: the only row of its loop.
+/// Columns for f of a length or of an offset: the only row of its loop.
 void take_number(const Mechanism& mechanism, const DriveSpec& drive, double t, Eigen::Index column,
                  LoopDriveColumns& c) {
   const auto& rows = mechanism.rows();

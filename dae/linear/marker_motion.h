@@ -1,5 +1,5 @@
 #pragma once
-// Markers of a mechanism at states of any scalar: in dual numbers, what they do along directions.
+// Markers of a mechanism at states of any scalar: dual numbers give derivatives along directions.
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/scalar/power_series.h>

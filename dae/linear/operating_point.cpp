@@ -17,7 +17,7 @@ bool can_be_freed(const Scene& scene, const DriveSpec& drive) {
 
 using Place = std::pair<std::string, int>;  // joint, part or coordinate
 
-/// A body of the tree by joint and coordinate: parts of one joint move different ones.
+/// A body by joint and coordinate: each part of a joint moves another one.
 Place place_of(const Tree::Body& b) {
   return {b.joint, b.coordinate};
 }

@@ -11,8 +11,8 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int most_corrections = 30;
-constexpr double least_open = 1e-10;  // of contradictions, in units: below it Φ = 0 is met
-constexpr double settled = 1e-12;     // of a correction, in units
+constexpr double least_open = 1e-10;  // contradiction in units: below it Φ = 0 is met
+constexpr double settled = 1e-12;     // last correction, in units
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
   return contradiction_->left > least_open ? close_least(t, q) : close(t, q);
 }
 
-/// To Φ = 0.
+/// Back to Φ = 0.
 bool PoseMotion::close(double t, VectorXd& q) {
   VectorXd next(q.size());
   double before = std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ bool PoseMotion::close(double t, VectorXd& q) {
   return phi_.cwiseAbs().maxCoeff() <= closed_;
 }
 
-/// To what numbers that contradict each other leave of it.
+/// Back to the least |Φ| that contradictions leave.
 bool PoseMotion::close_least(double t, VectorXd& q) {
   const VectorXd& unit = loops_.units().rates;
   LeastNorm steps(loops_.pattern(), mechanism_.m(), mechanism_.nv());
@@ -111,7 +111,7 @@ bool PoseMotion::free_velocity(double t, const VectorXd& q, const VectorXd& p, V
   VectorXd unused(mechanism_.nv()), none = VectorXd::Zero(mechanism_.nv()), prescribed = none;
   if (!e_->open_momentum_rates(t, q.data(), p.data(), y.data(), unused.data())) return false;
   if (!mechanism_.plan().drives) return true;
-  // p = M y + what drives prescribe.
+  // p = M y + prescribed momenta.
   const bool ok =
       e_->open_momentum_rates(t, q.data(), none.data(), prescribed.data(), unused.data());
   y -= prescribed;

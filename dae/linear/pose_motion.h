@@ -1,10 +1,10 @@
 #pragma once
 // Poses on Φ = 0 near a pose: q ∘ exp δ, then corrections of least change in the mass metric.
 //
-// Where numbers contradict each other (contradiction.h), Φ goes back to what it is at the first
-// pose instead, by damped steps, −(JᵀJ + λ²)⁻¹ Jᵀ φ, λ what does not count of J: equations that are
-// independent by rounding alone ask for nothing. Of each step what the loops leave free is taken
-// away in the mass metric.
+// Where numbers contradict each other (contradiction.h), Φ returns to its value at the first pose
+// instead, by damped steps, −(JᵀJ + λ²)⁻¹ Jᵀ φ, λ a singular value of J that does not count:
+// equations independent by rounding alone have no effect. The mass metric removes each step's part
+// in the free motions.
 
 #include <momenta/dae/assembly/contradiction.h>
 #include <momenta/dae/form/coordinate_motion.h>
@@ -21,24 +21,24 @@ class PoseMotion {
  public:
   explicit PoseMotion(const Mechanism& mechanism);
 
-  /// False where the loops do not close; `q` is then of no use.
+  /// False where the loops do not close; `q` is then invalid.
   bool move(double t, const Eigen::VectorXd& from, const Eigen::VectorXd& delta,
             Eigen::VectorXd& q);
   /// u̇ (nv) and λ (m) of (3) at rest. False where something has no inertia.
   bool let_go(double t, const Eigen::VectorXd& q, Eigen::VectorXd& udot, Eigen::VectorXd& lambda);
 
-  /// y (nv) of M y + Φ_qᵀσ = p, Φ_q y = 0: what of a momentum moves. False where something has no
+  /// Free part y (nv) of a momentum: M y + Φ_qᵀσ = p, Φ_q y = 0. False where something has no
   /// inertia.
   bool free_velocity(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& p,
                      Eigen::VectorXd& y);
 
-  /// M y (nv) where the evaluation is placed.
+  /// M y (nv) at the pose of the evaluation.
   Eigen::VectorXd momentum(const Eigen::VectorXd& y);
 
   Evaluation<double>& evaluation() { return *e_; }
-  /// From which part of the largest on singular values of Φ_q count, by the first pose.
+  /// Relative; larger singular values of Φ_q at the first pose count.
   double pivot() const { return contradiction_ ? contradiction_->pivot : 0; }
-  /// Place in u of the joint at which let_go() failed.
+  /// Place in u where let_go() failed.
   int singular_joint() const { return solver_ ? solver_->singular_joint() : e_->singular_joint(); }
 
  private:
@@ -52,7 +52,7 @@ class PoseMotion {
   Eigen::VectorXd phi_, delta_, rest_;
   double closed_;
   ScaledLoops loops_;
-  std::optional<Contradiction> contradiction_;  ///< at the first pose
+  std::optional<Contradiction> contradiction_;  ///< the first pose's
 };
 
 }  // namespace momenta

@@ -16,10 +16,9 @@ using Eigen::VectorXd;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// What of an eigenvalue of K̃ along y is rounding: how K changes between poses that cannot be told
-/// apart, what the forces lose that it is made of, and what the solver itself loses. Of two poses
-/// on opposite sides the lesser change counts: a force with a corner at the pose has another K on
-/// one side, however near.
+/// Rounding of an eigenvalue of K̃ along y: the change of K between poses that cannot be told apart,
+/// rounding of the forces in K, and of the solver. Of two poses on opposite sides the lesser change
+/// counts: a force with a corner at the pose has another K on one side, however near.
 class Rounding {
  public:
   Rounding(const Mechanism& mechanism, const Equilibrium& at, const MatrixXd& N, const MatrixXd& K,
@@ -60,7 +59,7 @@ class Rounding {
   double floor_;
   const MatrixXd& N_;
   VectorXd stiffness_;             ///< roots of natural stiffnesses of the rates
-  std::vector<MatrixXd> changes_;  ///< of poses and their opposites, in turn
+  std::vector<MatrixXd> changes_;  ///< changes of K at poses and their opposites, in turn
 };
 
 struct OnBasis {
@@ -91,8 +90,8 @@ void self_adjoint(const OnBasis& r, const Mechanism& mechanism, const Equilibriu
 ///   (x)'   ( 0     Rᵀ ) (x)
 ///   (w)  = ( −K̃R  −C̃ ) (w),
 ///
-/// which has one zero for every z less. Those that are left, where C̃ does not hold z either, are as
-/// many as (K̃R  C̃Z) has dependent columns. x is counted in 1/ω₀, ω₀² about the size of K̃.
+/// which has one zero less for every z. Zeros remain where C̃ does not hold z either, as many as (K̃R
+/// C̃Z) has dependent columns. x is in units of 1/ω₀, ω₀² about the size of K̃.
 void first_order(const OnBasis& r, const Mechanism& mechanism, const Equilibrium& at,
                  std::vector<Mode>& modes) {
   const Eigen::Index d = r.K.rows();

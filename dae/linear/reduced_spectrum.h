@@ -1,5 +1,5 @@
 #pragma once
-// The spectrum on a basis of all motions that the loops allow.
+// The spectrum on a basis of all motions that loops allow.
 
 #include <momenta/dae/linear/spectrum.h>
 
@@ -10,10 +10,10 @@ namespace momenta {
 void reduced_spectrum(const Mechanism& mechanism, const Equilibrium& equilibrium,
                       const Eigen::MatrixXd& N, Spectrum& found);
 
-/// Of length 1 in M, given φᴴMφ, the largest entry real and positive.
+/// Scales to length 1 in M, φᴴMφ = `squared`; largest entry real and positive.
 void normalise(Mode& mode, double squared);
 
-/// Growing ones first, then by |s|.
+/// Sorts growing modes first, then by |s|.
 void sort_modes(std::vector<Mode>& modes);
 
 }  // namespace momenta

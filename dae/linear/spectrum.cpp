@@ -18,9 +18,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_dense = 400;    // rates, or loop equations, of singular values
-constexpr int most_reduced = 300;  // degrees of freedom whose modes are all found
-constexpr int usual_count = 20;    // of more
+constexpr int most_dense = 400;    // rates, or loop equations, for singular values
+constexpr int most_reduced = 300;  // up to which all modes are found
+constexpr int usual_count = 20;    // modes found of more
 
 /// Φ_q at the equilibrium in the units of kkt/row_scales.h: D^(−1/2) Φ_q diag(M)^(−1/2).
 struct LoopsThere {
@@ -48,8 +48,7 @@ LoopsThere loops_there(const Mechanism& mechanism, const Equilibrium& at) {
   return s;
 }
 
-/// The motions that the loops allow, by the right singular vectors that belong to no singular
-/// value, Φ_q being of this rank.
+/// Motions that loops allow: right singular vectors of singular value zero, Φ_q having this rank.
 MatrixXd motions_dense(const Mechanism& mechanism, const LoopsThere& s, int rank) {
   const int nv = mechanism.nv(), m = mechanism.m();
   if (m == 0) return MatrixXd::Identity(nv, nv);
@@ -60,7 +59,7 @@ MatrixXd motions_dense(const Mechanism& mechanism, const LoopsThere& s, int rank
   return s.column.asDiagonal() * SingularValues(a).v.rightCols(nv - rank);
 }
 
-/// The same by projecting random vectors onto them, as many as there are.
+/// The same, by projection of as many random vectors.
 MatrixXd motions_by_projection(const Mechanism& mechanism, const Equilibrium& at,
                                const LoopsThere& s, const std::vector<int>& dependent,
                                int mobility) {
@@ -89,7 +88,7 @@ MatrixXd motions_by_projection(const Mechanism& mechanism, const Equilibrium& at
   return s.column.asDiagonal() * orthonormal;
 }
 
-/// Between points that coincide a spring has no direction, and no stiffness that could be told.
+/// A spring of no length has no direction, and no stiffness.
 void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium& at) {
   const Scene& scene = mechanism.scene();
   const auto is_spring = [](const ForceSpec& f) { return f.kind == "spring-damper"; };
@@ -173,7 +172,7 @@ Spectrum spectrum(const Mechanism& mechanism, const Equilibrium& at, int count, 
     }
   }
   if (count > 0 && found.modes.size() > static_cast<std::size_t>(count)) {
-    // Growing ones come first; of the others those nearest to s = 0.
+    // Growing modes, then those nearest to s = 0.
     found.modes.resize(static_cast<std::size_t>(count));
     found.complete = false;
   }

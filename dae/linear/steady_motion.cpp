@@ -41,7 +41,7 @@ struct Decomposed {
   }
 };
 
-/// The first-order system of the y that act and of w, y counted in 1/ω.
+/// First-order system of w and of the y that act, y in units of 1/ω.
 struct Reduced {
   MatrixXd mass, P, N, S, kept, dropped;  ///< kept, dropped: of y
   MatrixXd E, of_w, system;               ///< ẏ = E y + of_w w
@@ -104,7 +104,7 @@ Reduced reduce(const Mechanism& mechanism, const SteadyMotion& at) {
   return r;
 }
 
-/// What of eigenvalues is rounding.
+/// Rounding of eigenvalues.
 double dust(const Reduced& r) {
   return 64 * static_cast<double>(r.system.rows()) * std::numeric_limits<double>::epsilon() *
          r.omega;
@@ -126,7 +126,7 @@ std::vector<Mode> modes_of(const Reduced& r) {
     if (mode.s == 0.0) {
       mode.shape = r.N * w + r.S * y;
     } else {
-      if (r.dropped.cols() > 0) {  // they follow
+      if (r.dropped.cols() > 0) {  // y that follow from w
         const MatrixXcd follows = mode.s * MatrixXcd::Identity(r.dropped.cols(), r.dropped.cols()) -
                                   MatrixXcd(r.dropped.transpose() * r.E * r.dropped);
         y += r.dropped * follows.fullPivLu().solve(r.dropped.transpose() * (r.E * y + r.of_w * w));
@@ -161,7 +161,7 @@ VectorXd carried(const Mechanism& mechanism, const VectorXd& q, const VectorXd& 
   return at;
 }
 
-/// One sentence naming what changes.
+/// One sentence on changes.
 [[noreturn]] void refuse_unsteady(const Mechanism& mechanism, const VectorXd& udot) {
   Eigen::Index worst = 0;
   udot.cwiseQuotient(natural_units(mechanism)).cwiseAbs().maxCoeff(&worst);
@@ -198,7 +198,8 @@ Spectrum steady_spectrum(const Mechanism& mechanism, const Start& start, SteadyM
     const Reduced other = reduce(mechanism, there);
     bool differs = other.system.rows() != reduced.system.rows();
     if (!differs) {
-      // Coefficients of characteristic polynomials are no scale; matrices are, up to the bases.
+      // Matrices have a scale, up to the bases; coefficients of characteristic polynomials have
+      // none.
       const std::vector<Mode> modes = modes_of(other);
       differs = modes.size() != found.modes.size();
       for (std::size_t i = 0; !differs && i < modes.size(); ++i)

@@ -6,9 +6,9 @@
 //   mixed      E = max_ij |y_ij − r_ij| / (1 + |r_ij|)
 //
 // The first, with a threshold s for values near zero, is that of González, Dopico, Lugrís and
-// Cuadrado, A benchmarking system for MBS simulation software, Multibody Syst. Dyn. 16 (2006),
-// which the benchmark problems of the IFToMM Technical Committee for Multibody Dynamics come from;
-// the second is that of momenta's other studies.
+// Cuadrado, A benchmarking system for MBS simulation software, Multibody Syst. Dyn. 16 (2006), the
+// source of the benchmark problems of the IFToMM Technical Committee for Multibody Dynamics;
+// momenta's other studies use the second.
 
 #include <algorithm>
 #include <cmath>
@@ -31,11 +31,11 @@ class BenchmarkError {
       collected_ += e * e;
     } else {
       const double e = difference / (1 + size);
-      if (!std::isnan(collected_) && !(e <= collected_)) collected_ = e;  // NaN too, which stays
+      if (!std::isnan(collected_) && !(e <= collected_)) collected_ = e;  // NaN stays
     }
   }
 
-  /// Not a number where nothing was added.
+  /// NaN where nothing was added.
   double value() const {
     if (count_ == 0) return std::numeric_limits<double>::quiet_NaN();
     return kind_ == Kind::threshold ? std::sqrt(collected_ / static_cast<double>(count_))

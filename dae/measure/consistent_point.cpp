@@ -13,7 +13,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double usable = 1e-8;  // singular values, of the largest
+constexpr double usable = 1e-8;  // relative singular values that count
 constexpr double met = 1e-13, met_enough = 1e-10;
 constexpr int most_newton_steps = 60, most_halvings = 10;
 
@@ -22,10 +22,10 @@ constexpr int most_newton_steps = 60, most_halvings = 10;
 struct CurveCorrection::Factors {
   int n = 0, nu = 0;
   double time = 1;
-  std::vector<int> least, free;  ///< unknowns of y_0 that change least, and those that are free
-  Vector rows, columns, scale;   ///< of F_0 …; of y_1 … and what is free; of what changes least
+  std::vector<int> least, free;  ///< least-changed and free unknowns of y_0
+  Vector rows, columns, scale;   ///< scales of F_0 …; of y_1 … and `free`; of `least`
   Matrix by_y;                   ///< J_0 of scaled rows and unknowns
-  SingularValues svd;            ///< of J_+
+  SingularValues svd;            ///< SVD of J_+
   Eigen::Index rank = 0;
   DenseLeastSquares constraints;  ///< N J_0
 
@@ -50,7 +50,7 @@ CurveCorrection::CurveCorrection(const CurveBlocks& at, int nu, double time_scal
   f.scale.resize(least);
   for (Eigen::Index k = 0; k < least; ++k) f.scale[k] = scale[f.least[static_cast<std::size_t>(k)]];
   const int size = (nu + 1) * n;
-  // J_+, with it what is free of y_0, then the rest of J_0.
+  // J_+, with free columns of y_0, then the rest of J_0.
   Matrix all = Matrix::Zero(size, size + free + least);
   for (int i = 0; i <= nu; ++i) {
     for (int j = 1; j <= i + 1; ++j)
@@ -65,7 +65,7 @@ CurveCorrection::CurveCorrection(const CurveBlocks& at, int nu, double time_scal
   f.rows = Vector::Ones(size);
   const Vector columns = equilibrate(all, f.rows);
   f.columns = columns.head(size + free);
-  // Unknowns keep their own scale: what is least must not depend on how F is written.
+  // Least changes do not depend on how F is written.
   f.by_y = all.rightCols(least) * columns.tail(least).cwiseInverse().asDiagonal();
   f.svd = SingularValues(all.leftCols(size + free));
   f.rank = f.svd.rank(usable);
@@ -103,7 +103,7 @@ double CurveCorrection::size(const Matrix& f) const {
 
 namespace {
 
-/// Corrects the curve until F_0 … F_ν vanish; what is left of them. NaN: F is not finite.
+/// Corrects the curve until F_0 … F_ν vanish; returns the residual. NaN: F is not finite.
 double meet(const CurveSystem& system, double t, int nu, const Vector& scale, double time_scale,
             Matrix& curve) {
   double before = std::numeric_limits<double>::infinity();
@@ -121,7 +121,7 @@ double meet(const CurveSystem& system, double t, int nu, const Vector& scale, do
       return size;
     before = size;
     const Matrix change = correction.of(f);
-    // Newton's whole step where it lessens F, else a half of it, and so on.
+    // Newton's whole step where it lessens F, else half, and so on.
     double part = 1;
     for (int half = 0;; ++half, part *= 0.5) {
       Matrix tried = curve;

@@ -5,8 +5,7 @@
 namespace momenta {
 namespace {
 
-constexpr double rounding_only =
-    1e-9;  // rows and columns below this, of the largest, are not scaled up
+constexpr double rounding_only = 1e-9;  // relative; smaller rows and columns are not scaled
 }  // namespace
 
 /// Unknown by unknown, direction 0 along y, direction 1 along y'.

@@ -16,8 +16,8 @@
 
 namespace momenta {
 
-/// F(t, y, y') = 0 of `size` equations in as many unknowns, on curves: y, y' and F are arrays of
-/// `size`, y' that of the same curve.
+/// F(t, y, y') = 0 of `size` equations and unknowns, on curves: y, y' of one curve and F are arrays
+/// of `size`.
 struct CurveSystem {
   int size = 0;
   std::function<void(double t, const Jet* y, const Jet* ydot, Jet* r)> equations;
@@ -35,8 +35,8 @@ struct CurveBlocks {
   std::vector<Eigen::MatrixXd> a, b;  ///< A_i, B_i
 };
 
-/// Rows and columns brought to a largest entry near 1 (Ruiz 2001), those that are nothing but
-/// rounding left alone. @return the column factors
+/// Scales rows and columns, but for rounding, to a largest entry near 1 (Ruiz 2001). @return the
+/// column factors
 Eigen::VectorXd equilibrate(Eigen::MatrixXd& matrix, Eigen::VectorXd& right);
 
 }  // namespace momenta

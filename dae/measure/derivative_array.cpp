@@ -10,11 +10,11 @@
 namespace momenta {
 namespace {
 
-constexpr double clear_zero = 1e-9;  // what a rank leaves out is below this
+constexpr double clear_zero = 1e-9;  // relative bound of values that a rank leaves out
 constexpr double consistent = 1e-9;  // equilibrated residual of the derivatives
 constexpr double solved = 1e-13;
 constexpr int most_corrections = 30;
-constexpr double of_corrections = 1e-8;  // singular values that corrections use
+constexpr double of_corrections = 1e-8;  // relative singular values for corrections
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
@@ -55,7 +55,7 @@ class Array {
       size.array() /= columns.array();
       found.residual = f.cwiseAbs().maxCoeff() / (1 + size.cwiseAbs().maxCoeff());
       svd = SingularValues(g);
-      // As good as it gets: solved, or no longer falling.
+      // Solved, or no longer falling.
       if (found.residual <= solved || correction == most_corrections ||
           (found.residual < consistent && found.residual > 0.5 * before))
         break;
@@ -68,13 +68,13 @@ class Array {
     return found;
   }
 
-  /// Whether y'_i stands in F: column i of B_0 is not zero. After level().
+  /// Whether F depends on y'_i: column i of B_0 ≠ 0. After level().
   std::vector<bool> appears() const {
     std::vector<bool> there;
     for (const auto& column : blocks_->b[0].colwise()) there.push_back(column.any());
     return there;
   }
-  /// y' as the last level() found it.
+  /// y' of the last level().
   Vector rate() const { return curve_.col(1); }
 
  private:
@@ -88,8 +88,8 @@ class Array {
     return g;
   }
 
-  /// The kernel's part in y_1: K its orthonormal basis, K_1 the first N rows. Directions of y'
-  /// still free are rank K_1, and y'_i is free where row i of K_1 is not zero.
+  /// The kernel's part in y_1: K its orthonormal basis, K_1 the first N rows. rank K_1 directions
+  /// of y' are free, and y'_i is free where row i of K_1 is not zero.
   void decide(const SingularValues& svd, ArrayLevel& found) const {
     const int n = system_.size;
     const RankFound whole = rank_by_gap(svd.values, svd.values[0]);
@@ -128,7 +128,7 @@ RankFound rank_by_gap(const Eigen::VectorXd& values, double largest) {
   const auto value = [&](Eigen::Index i) {
     return i < values.size() && largest > 0 ? std::max(values[i] / largest, floor) : floor;
   };
-  // Rank zero is what nothing but rounding has; then the ratio is that of 1 to what is there.
+  // Rank zero: all values are rounding.
   found.kept = 1;
   found.dropped = value(0);
   for (Eigen::Index i = 0; i < values.size(); ++i)

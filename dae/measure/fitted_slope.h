@@ -1,6 +1,6 @@
 #pragma once
-// The slope of a line through points by least squares, and how far slopes of the two halves differ
-// from it: what growth exponents and observed orders are.
+// The slope of a line through points by least squares, and the difference of the slopes of its
+// halves, for growth exponents and observed orders.
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace momenta {
 
-/// Of points first ≤ i < last; O(last − first).
+/// Slope of points first ≤ i < last; O(last − first).
 inline double fitted_slope(const std::vector<double>& x, const std::vector<double>& y,
                            std::size_t first, std::size_t last) {
   const auto n = static_cast<double>(last - first);
@@ -23,11 +23,11 @@ inline double fitted_slope(const std::vector<double>& x, const std::vector<doubl
 }
 
 struct SlopeAndSpread {
-  double slope;       ///< of all points
-  double half_range;  ///< half the spread of the slopes of the whole and of its two halves
+  double slope;       ///< slope of all points
+  double half_range;  ///< half the spread of slopes: all points and both halves
 };
 
-/// Of points whose first `half` are the first half; the second begins with point n − half.
+/// Halves are the first `half` points and those from n − half on.
 inline SlopeAndSpread fitted_slopes(const std::vector<double>& x, const std::vector<double>& y,
                                     std::size_t half) {
   const std::size_t n = x.size();

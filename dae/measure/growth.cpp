@@ -7,10 +7,9 @@
 namespace momenta {
 namespace {
 
-constexpr double range =
-    20;  // the fit looks at [T/20, T]: the first 5 % of a run are its transient
+constexpr double range = 20;  // fitted range [T/20, T]: the first 5 % of a run are its transient
 constexpr double least_range = 4;
-constexpr int points = 60;  // log-spaced in that range
+constexpr int points = 60;  // log-spaced in the range
 
 }  // namespace
 

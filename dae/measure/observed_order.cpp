@@ -20,7 +20,7 @@ ObservedOrder observed_order(const std::vector<double>& steps, const std::vector
     y.push_back(-std::log(errors[i]));
   }
   if (x.size() < least_rungs) return found;
-  // Of an odd number both halves have the middle.
+  // With an odd number both halves have the middle.
   const auto [slope, half_range] = fitted_slopes(x, y, (x.size() + 1) / 2);
   if (!std::isfinite(slope)) return found;
   found.order = slope;

@@ -3,8 +3,8 @@
 //
 //   error ∝ steps^(−r),
 //
-// r by least squares of the logarithms over a ladder of steps or tolerances. Of methods with error
-// control the number of steps stands for the inverse of their mean length.
+// r by least squares of the logarithms over a ladder of steps or tolerances. With error control the
+// number of steps stands for the inverse of their mean length.
 
 #include <momenta/dae/measure/growth.h>
 
@@ -12,17 +12,14 @@
 
 namespace momenta {
 
-/// An observed order.
 struct ObservedOrder {
-  double order = not_measured;       ///< r; NaN: fewer than three rungs show it
-  double half_range = not_measured;  ///< half the spread of the slopes of sub-ladders
-  int rungs = 0;                     ///< of the fit
+  double order = not_measured;       ///< r; NaN: fewer than three rungs
+  double half_range = not_measured;  ///< half the spread of slopes: ladder and halves
+  int rungs = 0;                     ///< rungs in the fit
 };
 
-/// The order that errors (1) of runs with so many steps show, steps ascending. The fit takes the
-/// rungs whose error is below 0.1, the least included and none behind it: those are rounding. NaN
-/// errors are left out. The half-range is half the spread of the slopes of the two halves and of
-/// the whole.
+/// The order from errors (1) of runs with ascending numbers of steps. The fit takes rungs with an
+/// error below 0.1, up to the least: later ones are rounding. NaN errors are left out.
 ObservedOrder observed_order(const std::vector<double>& steps, const std::vector<double>& errors);
 
 }  // namespace momenta

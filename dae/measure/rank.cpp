@@ -12,8 +12,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int walks = 4, poses_of_a_walk = 2;
-constexpr double way = 0.1;          // [rad, m]
-constexpr double takes_part = 1e-6;  // of a dependency's largest coefficient
+constexpr double way = 0.1;          // step [rad, m]
+constexpr double takes_part = 1e-6;  // relative coefficient
 
 class RankScout {
  public:
@@ -44,7 +44,7 @@ class RankScout {
     return p;
   }
 
-  /// A pose on Φ = 0 about `way` from q; empty when none was found.
+  /// A pose on Φ = 0 about `way` from q; empty: none found.
   VectorXd nearby(double t, const VectorXd& q, const VectorXd& momentum) {
     const int nv = mechanism_.nv();
     VectorXd u(nv);
@@ -83,14 +83,14 @@ class RankScout {
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
-  double closed_;  ///< |Φ|∞: rounding, or what redundant equations leave open at the start
+  double closed_;  ///< |Φ|∞: rounding, or gap of redundant equations
 };
 
-/// What a loop becomes with some of its rows alone.
+/// A loop with some of its rows alone.
 struct Simplification {
   LoopKind from;
   const char* to;
-  std::vector<int> rows;  ///< kept, counted within the loop
+  std::vector<int> rows;  ///< kept rows, counted within the loop
 };
 const std::vector<Simplification>& in_space() {
   static const std::vector<Simplification> all{{LoopKind::weld, "revolute", {0, 1, 2, 4, 5}},
@@ -112,7 +112,7 @@ const std::vector<Simplification>& in_plane() {
   return all;
 }
 
-/// Loops, last first, each by what keeps the rank of `a` with the fewest rows.
+/// Loops, last first, each with the fewest rows that keep the rank of `a`.
 std::vector<SimplerLoop> simpler_loops(const Mechanism& mechanism, const MatrixXd& a, int rank,
                                        const std::vector<bool>& involved) {
   const auto& rows = mechanism.rows();
@@ -183,12 +183,12 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
 
   MatrixXd elsewhere = here;
   MatrixXd left_elsewhere = own.left;
-  std::mt19937 random(1);  // the same poses every time
+  std::mt19937 random(1);  // fixed seed
   VectorXd from, u(mechanism.nv());
   std::normal_distribution<double> normal;
   for (int i = 0; i < walks * poses_of_a_walk; ++i) {
-    // From a singular pose motions part, and some of them stay among poses of lower rank.
-    // The first goes the way the mechanism does.
+    // Motions part at a singular pose, some to poses of lower rank. The first follows the
+    // mechanism.
     if (i % poses_of_a_walk == 0) from = q;
     if (i == 0 && !start.u.isZero(0))
       u = start.u;
@@ -235,7 +235,7 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
 
 namespace {
 
-/// Within its loop, from 1.
+/// Row within its loop, from 1.
 int number_of(const std::vector<RowName>& rows, int row) {
   int k = row;
   while (k > 0 &&

@@ -1,11 +1,11 @@
 #pragma once
-// Which loop equations depend on which: at a pose, and at poses nearby on Φ = 0, which tells what
-// is redundant wherever the mechanism goes from what is so only here, at a singular pose.
+// Dependent loop equations, at a pose and at poses nearby on Φ = 0: some are redundant everywhere,
+// some only here, at a singular pose.
 //
-// At the pose itself by the verdict of kkt/loop_rank.h, at others by the same singular values.
+// The verdict at the pose itself is that of kkt/loop_rank.h, at others by the same singular values.
 //
-// Nearby poses are reached by steps of a tenth of a radian, along the mechanism's own velocities
-// and along random ones that the loops allow, in several walks, each step brought back to Φ = 0.
+// Walks of several steps of a tenth of a radian reach nearby poses, along the mechanism's own
+// velocities and along random ones that loops allow, each step brought back to Φ = 0.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_rank.h>
@@ -15,39 +15,38 @@
 
 namespace momenta {
 
-/// One row of Φ that follows from others.
+/// A row of Φ that follows from others.
 struct Dependency {
   int row = 0;
-  std::vector<int> on;     ///< rows it follows from, ascending; empty: it says nothing by itself
-  bool only_here = false;  ///< not at the poses nearby
+  std::vector<int> on;     ///< rows it follows from, ascending; empty: it demands nothing
+  bool only_here = false;  ///< independent at the poses nearby
 };
 
-/// A loop that would tie as much with fewer equations.
+/// A loop that could do with fewer equations.
 struct SimplerLoop {
   std::string loop;
-  std::string kind;  ///< empty: none is needed
-  int fewer = 0;     ///< equations
+  std::string kind;  ///< empty: no loop is needed
+  int fewer = 0;     ///< equations saved
 };
 
 struct RankReport {
   int rank = 0;
-  double kept = 0;      ///< smallest singular value of A that counts
-  double dropped = 0;   ///< largest that does not; 0 where all count
-  int poses = 0;        ///< tried nearby; 0: the mechanism cannot move
-  int rank_nearby = 0;  ///< largest rank there; that of the pose itself without any
+  double kept = 0;                       ///< smallest singular value of A that counts
+  double dropped = 0;                    ///< largest that does not count; 0: all count
+  int poses = 0;                         ///< tried nearby; 0: the mechanism cannot move
+  int rank_nearby = 0;                   ///< largest nearby; without poses that of the pose itself
   std::vector<Dependency> dependencies;  ///< by row
-  std::vector<SimplerLoop> simpler;      ///< changes that together leave nearby ranks as they are
-  /// m × dependencies: forces of the loops that move nothing, by column; λ and σ are determined but
-  /// for these.
+  std::vector<SimplerLoop> simpler;      ///< changes that together keep the ranks nearby
+  /// Forces of loops that move nothing, m × dependencies; λ and σ are determined but for these.
   Eigen::MatrixXd idle;
 
   bool singular_here() const { return rank < rank_nearby; }
-  /// Whether the multiplier of a row is unique.
+  /// Whether a row's multiplier is unique.
   bool unique(int row) const;
 };
 
-/// At a consistent pose; of its rates only the direction matters. Cost O((n + m)³), for mechanisms
-/// of some hundred equations.
+/// Report at a consistent pose; only the direction of rates matters. Cost O((n + m)³), for some
+/// hundred equations.
 RankReport rank_report(const Mechanism& mechanism, const Start& start);
 
 /// "loop 'C' row 3, axis 3 against axis 1"

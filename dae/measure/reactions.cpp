@@ -9,7 +9,7 @@
 namespace momenta {
 namespace {
 
-/// Sweep axes of body k to ground axes: the plane's own in the plane, the body's in space.
+/// From sweep axes of body k (the plane's own in the plane, the body's in space) to ground axes.
 Eigen::Vector3d ground_vector(const Workspace<Spatial, double>& w, int k, const Vec3<double>& v) {
   const Vec3<double> g = to_ground(w, k, v);
   return {g[0], g[1], g[2]};
@@ -24,7 +24,7 @@ Eigen::Vector3d ground_couple(const Workspace<Planar, double>& w, int, double c)
   return w.model->basis.col(2) * c;
 }
 
-/// The point `at`, tree's frame of body k, in ground axes.
+/// The point `at`, in the tree's frame of body k, in ground axes.
 Eigen::Vector3d ground_point(const Workspace<Spatial, double>& w, int k,
                              const Eigen::Vector3d& at) {
   const Vec3<double> x = point_position(w, k, w.model->point(k, at));
@@ -36,7 +36,7 @@ Eigen::Vector3d ground_point(const Workspace<Planar, double>& w, int k, const Ei
   return w.model->basis * Eigen::Vector3d(x[0], x[1], height);
 }
 
-/// The wrench F on body k about its model origin, as one about `at`, a point of the tree's frame.
+/// The wrench F on body k about its model origin, moved to `at`, tree's frame.
 template <class Space>
 Transmitted transmitted(const std::string& name, const Workspace<Space, double>& w, int k,
                         const Eigen::Vector3d& at,
@@ -112,7 +112,7 @@ class Sweep final : public WrenchSweep {
     Reactions all;
     for (std::size_t i = 0; i < scene.loops.size(); ++i) {
       const auto& l = loop_model_.loops[i];
-      if (l.is_coupler()) {  // no body feels it but through its joints
+      if (l.is_coupler()) {  // acts on bodies through their joints alone
         const Eigen::Vector3d none = Eigen::Vector3d::Zero();
         all.loops.push_back({scene.loops[i].name, none, none, none});
         continue;
@@ -134,7 +134,6 @@ class Sweep final : public WrenchSweep {
   }
 
  private:
-  /// A driven coordinate of a coupler.
   struct Coupled {
     int drive;
     std::size_t row;
@@ -170,7 +169,8 @@ class Sweep final : public WrenchSweep {
 Reactions reactions(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                     const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
                     const Eigen::VectorXd& lambda) {
-  if (const auto& lagrangian = mechanism.scene().lagrangian) {  // no body feels them
+  if (const auto& lagrangian = mechanism.scene().lagrangian) {  // loops of a Lagrangian act on no
+                                                                // body
     Reactions all;
     const Eigen::Vector3d none = Eigen::Vector3d::Zero();
     for (const auto& c : lagrangian->constraints) all.loops.push_back({c.name, none, none, none});
@@ -192,7 +192,7 @@ std::unique_ptr<WrenchSweep> make_wrench_sweep(const Mechanism& mechanism) {
 
 void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
                        const Eigen::VectorXd& q, const Eigen::MatrixXd& idle, double rounding) {
-  // Reactions are affine in λ: what a column of `idle` adds, with nothing moving.
+  // Reactions are affine in λ: change by a column of `idle`, at rest.
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(mechanism.nv());
   const double length = length_of(mechanism.scene());
   const Reactions without =

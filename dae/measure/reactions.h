@@ -9,13 +9,13 @@
 // on its child is −λ times the unit wrenches of its rows; its parent takes the opposite wrench on
 // the same line of action.
 //
-// A driven coordinate d of a joint is a coordinate whose equation (1a) is not solved but gives the
-// effort of its drive, with r_d the ratios of couplers that tie it:
+// A driven coordinate d of a joint has an equation (1a) that is not solved but gives the effort of
+// its drive, with r_d the ratios of its couplers:
 //
 //   τ_d = E_dᵀ F_K + Σ r_d λ
 //
-// The planar kernel has forces in the plane and torques normal to it. Loads out of the plane are
-// not determined there, and are left out.
+// The planar kernel has forces in the plane and torques normal to it. Other loads are not
+// determined there, and are left out.
 
 #include <momenta/dae/mechanism.h>
 
@@ -27,34 +27,32 @@ namespace momenta {
 
 /// The wrench on the child of a joint or loop, in ground axes.
 struct Transmitted {
-  std::string name;        ///< of the joint or loop
-  Eigen::Vector3d at;      ///< the joint's or loop's point of the child, ground axes [m]
+  std::string name;        ///< joint or loop
+  Eigen::Vector3d at;      ///< point of the child, ground axes [m]
   Eigen::Vector3d force;   ///< [N]
   Eigen::Vector3d torque;  ///< about `at` [N m]
   bool unique = true;      ///< false: redundant loop equations leave this wrench undetermined
 };
 
-/// The wrenches of all joints and loops.
 struct Reactions {
-  std::vector<Transmitted> joints;  ///< in the order of joint_places()
-  std::vector<Transmitted> loops;   ///< in the order of the scene
+  std::vector<Transmitted> joints;  ///< order of joint_places()
+  std::vector<Transmitted> loops;   ///< order of the scene
 };
 
-/// The wrenches along a motion: what they need of the mechanism is made once.
 class WrenchSweep {
  public:
   virtual ~WrenchSweep() = default;
 
-  /// Sweeps the bodies at (t, q, u), with accelerations `udot` (nv) and force multipliers `lambda`
-  /// (m) [N, N m]. Cost O(bodies + loops), no allocation.
+  /// Sweeps at (t, q, u), with accelerations `udot` (nv) and force multipliers `lambda` (m) [N, N
+  /// m]. Cost O(bodies + loops), no allocation.
   virtual void move(double t, const double* q, const double* u, const double* udot,
                     const double* lambda) = 0;
-  /// The efforts of the drives of joints, by their places in Tree::drives: what each drive adds
-  /// along its coordinate, beside what springs and formulas do there [N m, N]. After move().
+  /// Efforts of joints' drives along their coordinates, in the order of Tree::drives, without
+  /// springs and formulas [N m, N]. After move().
   virtual void efforts(double* by_drive) const = 0;
-  /// Σ F_K·Ω_t: the power of what moves joints with time, drives above all [W]. After move().
+  /// Σ F_K·Ω_t: power of prescribed motion of joints [W]. After move().
   virtual double prescribed_power() const = 0;
-  /// The wrenches of all joints and loops. After move().
+  /// After move().
   virtual Reactions reactions() = 0;
 };
 
@@ -67,8 +65,8 @@ Reactions reactions(const Mechanism& mechanism, double t, const Eigen::VectorXd&
                     const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
                     const Eigen::VectorXd& lambda);
 
-/// Marks as not unique the wrenches that change with multipliers without effect on the motion, the
-/// columns of `idle` (m × n, measure/rank.h), by more than `rounding` of the largest change.
+/// Marks wrenches as not unique that columns of `idle` (m × n, measure/rank.h), multipliers without
+/// effect on the motion, change by more than `rounding` of the largest change.
 void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
                        const Eigen::VectorXd& q, const Eigen::MatrixXd& idle,
                        double rounding = 1e-9);

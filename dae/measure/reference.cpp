@@ -64,7 +64,7 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
     for (const auto& cell : cells) {
       double value = 0;
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      // Numbers below the smallest double are zero for every purpose here.
+      // Numbers below the smallest double count as zero.
       if (error == std::errc::result_out_of_range && cell.find("e-") != std::string::npos)
         value = 0;
       else if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
@@ -133,7 +133,7 @@ Reference::Error Reference::error(std::size_t row, const std::vector<double>& me
            : kind == Kind::work     ? e.work
                                     : e.position;
   };
-  std::array<bool, 8> met{true, true};  // positions and velocities begin at 0
+  std::array<bool, 8> met{true, true};  // positions and velocities start at 0
   for (std::size_t i = 0; i < place_.size(); ++i) {
     if (kind_[i] == Kind::momentum) continue;
     if (std::binary_search(not_unique.begin(), not_unique.end(), place_[i])) continue;
@@ -141,7 +141,7 @@ Reference::Error Reference::error(std::size_t row, const std::vector<double>& me
     const double difference = std::abs(measured[place_[i]] - reference) / (1 + std::abs(reference));
     double& largest = of(kind_[i]);
     bool& any = met[static_cast<std::size_t>(kind_[i])];
-    // NaN too, which stays.
+    // NaN stays.
     if (!any || (!std::isnan(largest) && !(difference <= largest))) largest = difference;
     any = true;
   }

@@ -1,7 +1,7 @@
 #pragma once
-// A reference solution: a CSV whose first column is `t [s]` and whose other columns are named like
-// measured columns: those of the trajectory with reactions, momenta M u, loop impulses ∫λ dt, and
-// the work of drives and of what has no potential (study/measured_columns.h).
+// A reference solution: a CSV with first column `t [s]` and others named like measured columns: the
+// trajectory with reactions, momenta M u, loop impulses ∫λ dt, and the work of drives and of forces
+// without potential (study/measured_columns.h).
 
 #include <filesystem>
 #include <limits>
@@ -10,14 +10,13 @@
 
 namespace momenta {
 
-/// A reference solution, by time and column; immutable once bound.
+/// Immutable once bound.
 class Reference {
  public:
   Reference() = default;
-  /// Reads the file. @throws SceneError: file, line, what was found, what was expected.
+  /// @throws SceneError: file, line, what was found, what was expected.
   explicit Reference(const std::filesystem::path& file);
-  /// A solution that is not from a file: values by time and by column (without t); `source` names
-  /// it.
+  /// A solution without a file: values by time and by column (without t); `source` names it.
   Reference(std::string source, std::vector<std::string> columns, std::vector<double> times,
             std::vector<std::vector<double>> values)
       : file_(std::move(source)),
@@ -32,38 +31,36 @@ class Reference {
   const std::vector<std::vector<double>>& values() const { return values_; }  ///< by time, column
 
   /// Matches the columns with those of a row ("t [s]" first). @throws SceneError naming a column
-  /// that is none of them.
+  /// without a match.
   void bind(const std::vector<std::string>& measured_columns);
 
-  /// The text of the CSV file that the constructor reads, with all digits of each number.
+  /// CSV for the constructor, with all digits.
   std::string csv() const;
 
-  /// What a column is, by its name and unit.
+  /// Kind of a column, by its name and unit.
   enum class Kind { position, velocity, force, effort, reaction, momentum, impulse, work };
-  /// Whether there are such columns. After bind().
+  /// After bind().
   bool has(Kind kind) const;
-  /// Whether there are λ, efforts or reactions. After bind().
+  /// λ, efforts or reactions. After bind().
   bool has_forces() const { return has(Kind::force) || has(Kind::effort) || has(Kind::reaction); }
-  /// Which of the reference's columns is the one at a place among those it is bound to; columns()'
-  /// size where none is. After bind(). Cost O(columns).
+  /// The reference's column for a bound place; columns()' size: none. After bind(). Cost
+  /// O(columns).
   std::size_t column_at(std::size_t place) const;
 
-  /// The error of a row against the reference.
   struct Error {
-    /// Where nothing is compared.
+    /// Nothing is compared.
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
     double velocity = 0;  ///< the same over columns in rad/s and m/s
-    // The same over others; not a number where none is unique.
+    // The same over other columns; NaN where none is unique.
     double force = none;     ///< λ of loops [N, N m]
-    double effort = none;    ///< of drives [N, N m]
-    double reaction = none;  ///< of joints [N, N m]
+    double effort = none;    ///< efforts of drives [N, N m]
+    double reaction = none;  ///< reactions of joints [N, N m]
     double impulse = none;   ///< ∫λ dt [N s, N m s]
     double work = none;      ///< [J]
   };
-  /// The error of a row at the reference time of index `row`, without the columns that are not
-  /// unique there (places, ascending), and without momenta, whose error is not that of their
-  /// columns (study/momentum_error.h). After bind().
+  /// Error of a row at reference time `row`, without momenta (study/momentum_error.h) and columns
+  /// that are not unique there (places, ascending). After bind().
   Error error(std::size_t row, const std::vector<double>& measured,
               const std::vector<std::size_t>& not_unique = {}) const;
 
@@ -72,7 +69,7 @@ class Reference {
   std::vector<double> times_;
   std::vector<std::string> columns_;
   std::vector<std::vector<double>> values_;  ///< by time, by column
-  std::vector<std::size_t> place_;           ///< of each column in a row
+  std::vector<std::size_t> place_;           ///< place of each column in a row
   std::vector<Kind> kind_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What answers each verb, and the options that it alone has.
+// The function of each verb, and the options of that verb alone.
 
 #include "options.h"
 
@@ -12,12 +12,12 @@ struct AssembliesOptions {
   int starts = 1000;
   std::uint64_t seed = 1;
   int threads = 0;            ///< 0: one for each processor
-  std::string by = "search";  ///< or homotopy
+  std::string by = "search";  ///< search or homotopy
 };
 /// `assemble --all`
 int assemblies(const Options& o, const AssembliesOptions& a);
 int run(const Options& o);
-/// The page of the assembled mechanism: a file with --out, else on standard output.
+/// The page goes to --out or standard output.
 int view(const Options& o);
 struct DriftOptions {
   std::string forms;  ///< comma-separated; empty: all
@@ -27,12 +27,12 @@ struct WorkOptions {
   std::string forms, integrators;  ///< comma-separated; empty: all forms, dop853
   double loosest = 1e-4, tightest = 1e-12;
   double per_decade = 1;
-  int step_rungs = 6;         ///< of a ladder of fixed steps, each half of the last
+  int step_rungs = 6;         ///< fixed steps, each half of the last
   bool no_reference = false;  ///< judge by drift alone
   bool orders = false;        ///< print observed orders in place of the conclusion
 };
 int work(const Options& o, const WorkOptions& w);
-/// 1e-4, 1e-5, … through the tolerances asked for. @throws std::invalid_argument
+/// 1e-4, 1e-5, … in the given range. @throws std::invalid_argument
 std::vector<double> tolerance_rungs(const WorkOptions& w);
 struct StressOptions {
   std::string forms, integrators, along;  ///< comma-separated; empty: the usual ones, all ladders
@@ -40,7 +40,7 @@ struct StressOptions {
   double reference_seconds = 10;
   int threads = 0;  ///< 0: one for each processor
 };
-/// Without a scene: the built-in ladders.
+/// Built-in ladders without a scene.
 int stress(const Options& o, const StressOptions& options);
 struct SectionOptions {
   std::string when, axes, starts, led;
@@ -51,7 +51,7 @@ int section(const Options& o, const SectionOptions& s);
 struct SweepOptions {
   std::vector<std::string> vary;
   std::string watch;   ///< comma-separated
-  std::string sample;  ///< random, latin or sobol; empty: every combination
+  std::string sample;  ///< random, latin or sobol; empty: all combinations
   std::optional<std::size_t> points;
   std::optional<std::uint64_t> seed;
   bool indices = false;
@@ -81,20 +81,20 @@ struct MoveOptions {
 };
 int move(const Options& o, const MoveOptions& m);
 struct EffortOptions {
-  std::filesystem::path motion;  ///< a table; empty: that of the drives
+  std::filesystem::path motion;  ///< a table; empty: motion of the drives
   std::string actuate, hold;     ///< comma-separated
   std::string weights;           ///< A=1,B=2
-  bool poses_alone = false;      ///< at rest
+  bool poses_alone = false;      ///< all at rest
   std::optional<double> within;
 };
 int effort(const Options& o, const EffortOptions& e);
 struct FitOptions {
   std::string vary;   ///< NAME=FROM:TO, comma-separated
   std::string sweep;  ///< a coordinate; empty: a run
-  /// The file of wanted poses, or without `sweep` of a measured motion; empty: wanted.csv or
-  /// measured.csv beside the scene.
+  /// Wanted poses, or without `sweep` a measured motion; empty: wanted.csv or measured.csv beside
+  /// the scene.
   std::filesystem::path to;
-  std::string least;              ///< a formula of the motion in place of a file; empty: none
+  std::string least;              ///< a formula of the motion; empty: none
   std::vector<std::string> keep;  ///< conditions
   std::string over;               ///< FROM:TO of the swept coordinate; empty: a turn
   std::optional<int> poses;
@@ -114,20 +114,18 @@ int gradient_verb(const Options& o, const GradientOptions& g);
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.
 int index_verb(const Options& o, const std::string& forms, const std::string& state);
-/// The verbs, of files of equations.
 int run_equation_file(const Options& o);
 int index_of_equations(const Options& o);
 int work_on_equations(const Options& o, const WorkOptions& w);
-/// Runs a suite of files of equations; `own`: references are made anew.
+/// `own`: makes references anew.
 int bench(const Options& o, bool own);
 struct ConvertOptions {
   std::filesystem::path out;      ///< empty or "-": standard output
-  bool recut = false;             ///< loops cut where they are carried with the least work
-  std::vector<std::string> keep;  ///< joints and loops that stay what they are
+  bool recut = false;             ///< cuts loops for the least work
+  std::vector<std::string> keep;  ///< joints and loops that stay
 };
-/// Writes the scene as TOML.
 int convert(const Options& o, const ConvertOptions& c);
-/// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument
+/// `n` empty: the family's usual size. @throws std::invalid_argument
 int make(const std::string& family, std::optional<int> n, bool turned);
 
 }  // namespace momenta::program

@@ -1,4 +1,4 @@
-// `momenta assemble`: the start to which a scene's guess leads.
+// `momenta assemble`: the start assembled from a scene's guess.
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/replaced_rates.h>

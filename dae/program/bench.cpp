@@ -1,5 +1,4 @@
-// The verb `bench`: a suite of mechanisms, or of files of equations, and what it shares with `work`
-// on one of them.
+// The verb `bench`: a suite of mechanisms, or of files of equations; parts of `work` on such files.
 
 #include <momenta/dae/report/equation_report.h>
 #include <momenta/dae/report/scene_suite_report.h>
@@ -17,8 +16,8 @@
 namespace momenta::program {
 namespace {
 
-/// Writes the files of a suite of either kind, where --out says, and prints its table. @return
-/// false where they cannot be written
+/// Writes the files of either suite to --out, and prints its table. @return false where they cannot
+/// be written
 template <class Result>
 bool told(const Options& o, const Result& result) {
   const Environment made = environment();

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes of examples/ compiled into the program: `momenta stress` runs them when no scene is given.
+// Scenes of examples/ in the program, for `momenta stress` without a scene.
 
 #include <string_view>
 

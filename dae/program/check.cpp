@@ -1,5 +1,4 @@
-// `momenta check`: what a mechanism is, whether its loop equations are independent, and how it will
-// be computed.
+// `momenta check`: a mechanism's parts, the rank of its loop equations, and how it is computed.
 
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/rod_ends.h>
@@ -43,8 +42,8 @@ constexpr FormIndex indices[] = {
     {"stabilised-index2", "2"},
 };
 
-/// Rows of positions are those that differ from form to form: without any, where all are A u = b,
-/// forms that have Φ = 0 have A u = b in its place.
+/// Index of a form. Without rows of positions, where all are A u = b, forms with Φ = 0 have A u = b
+/// in its place.
 std::string index_of(const Mechanism& mechanism, const std::string& form, const char* index) {
   if (count_nonholonomic(mechanism) < mechanism.m()) return index;
   if (form == "momentum-index2" || form == "momentum-stabilised") return "1";

@@ -1,4 +1,4 @@
-// What `momenta check --json` prints.
+// Output of `momenta check --json`.
 
 #include <momenta/core/operations.h>
 #include <momenta/dae/assembly/replaced_rates.h>

@@ -1,4 +1,4 @@
-// The rank of loop equations, which of them depend on others, and what would tie as much.
+// The rank of loop equations, dependent ones, and simpler loops.
 
 #include <cstdio>
 

@@ -11,10 +11,10 @@
 namespace momenta::program {
 namespace {
 
-/// Lines about bodies, and as many about loops, that a reader can be asked to read.
+/// Lines about bodies, and about loops.
 constexpr int most_lines = 200;
 
-/// "ground - rocker", "A, B" of a coupler; and whether drives prescribe something of it.
+/// "ground - rocker", "A, B" for a coupler; and whether drives prescribe a part of it.
 std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
   std::string words;
   if (has_equation(loop)) return loop.equation + " = 0";
@@ -28,7 +28,7 @@ std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
   return words;
 }
 
-/// A formula over several lines in one, its spaces single.
+/// A formula in one line, with single spaces.
 std::string in_one_line(const std::string& text) {
   std::string line;
   for (const char c : text) {
@@ -39,7 +39,6 @@ std::string in_one_line(const std::string& text) {
   return line;
 }
 
-/// What the author wrote.
 void print_formulas(const LagrangianSpec& spec) {
   std::string names;
   for (const auto& c : spec.coordinates) names += (names.empty() ? "" : ", ") + c.name;
@@ -75,7 +74,7 @@ void print_structure(const Checked& c) {
     int drives = 0;
     for (int k = c.tree.first_part(last); k <= last; ++k)
       drives += c.tree.bodies[static_cast<std::size_t>(k)].drive >= 0;
-    if (depth > 12 || lines == most_lines) {  // the first bodies tell the pattern
+    if (depth > 12 || lines == most_lines) {  // the first bodies show the pattern
       ++left_out;
       continue;
     }

@@ -1,5 +1,5 @@
-// Completion scripts for bash, zsh and fish. Each is a table of the words that can follow a word,
-// made from the options themselves; the shells do the rest.
+// Completion scripts for bash, zsh and fish: tables of the words that can follow a word, made from
+// the options themselves.
 
 #include <algorithm>
 #include <map>
@@ -19,7 +19,7 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
   return text;
 }
 
-/// Within single quotes of a shell.
+/// Text within single quotes of a shell.
 std::string shell_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
@@ -41,7 +41,7 @@ std::vector<std::string> names_of(const std::vector<const CLI::Option*>& options
 
 // bash ------------------------------------------------------------------------------------------
 
-/// The call that offers what stands behind a type name.
+/// Call that offers values of a type name.
 std::string bash_offer(const std::string& type_name) {
   const Values values = values_of(type_name);
   switch (values.paths) {
@@ -60,7 +60,7 @@ std::string bash_offer(const std::string& type_name) {
 }
 
 std::string bash_script(const CLI::App& program) {
-  // Patterns "verb --option" by what they offer.
+  // Patterns "verb --option" by values.
   std::map<std::string, std::vector<std::string>> patterns;
   std::string options, positionals;
   std::vector<std::string> verbs, flags;
@@ -156,7 +156,7 @@ complete -F _momenta momenta
 
 // zsh -------------------------------------------------------------------------------------------
 
-/// Within a specification of _arguments, whose own signs are : [ ].
+/// Text within a specification of _arguments, where : [ ] are special.
 std::string zsh_text(const std::string& text) {
   std::string out;
   for (const char c : text) {

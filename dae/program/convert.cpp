@@ -1,4 +1,4 @@
-// The verb `convert`: writes any scene as TOML, as it is or with other joints cut.
+// The verb `convert`: writes any scene as TOML, unchanged or with other joints cut.
 
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/text/near_name.h>
@@ -35,7 +35,7 @@ Scene recut_scene(const Options& o, const ConvertOptions& c) {
   return found.scene;
 }
 
-/// Files of meshes are named from the folder of the scene, which is now that of `out`.
+/// Names files of meshes from the folder of `out`.
 void find_meshes_from(const std::filesystem::path& out, Scene& scene) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -12,7 +12,7 @@
 namespace momenta::program {
 namespace {
 
-char notice[160];  // what a signal handler may print
+char notice[160];  // text for a signal handler
 
 extern "C" void end_here(int) {
   const auto length = std::strlen(notice);

@@ -1,17 +1,17 @@
 #pragma once
-// --cpu-limit of what is no run: after so much CPU time the program ends with a sentence, and
-// status 1, before anything is written.
+// --cpu-limit of verbs without runs: at the limit the program ends with a sentence and status 1,
+// before it writes anything.
 
 namespace momenta::program {
 
 class CpuLimit {
  public:
-  /// [s] from now on, after `spent` before; 0: none. The last one made is in force.
+  /// Limit [s] from now, after `spent`; 0: none. The last object counts.
   explicit CpuLimit(double seconds, double spent = 0);
   ~CpuLimit() { lift(); }
   CpuLimit(const CpuLimit&) = delete;
   CpuLimit& operator=(const CpuLimit&) = delete;
-  /// From now on there is none: write_results() calls it.
+  /// Ends the limit, for write_results().
   static void lift();
 };
 

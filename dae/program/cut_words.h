@@ -1,5 +1,5 @@
 #pragma once
-// How much another choice of cut joints would save, in words.
+// Savings of other cut joints, in words.
 
 #include <momenta/dae/cut/recut.h>
 

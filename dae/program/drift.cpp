@@ -17,7 +17,7 @@ int drift(const Options& o, const DriftOptions& d) {
   const RunDefaults& defaults = mechanism->scene().run;
   DriftRequest request;
   request.forms = names_in(d.forms);
-  for (const auto& form : request.forms) is_dae_form(form);  // unknown names before anything runs
+  for (const auto& form : request.forms) is_dae_form(form);  // refuses unknown names before any run
   if (!o.integrator.empty() && integrator(o.integrator).takes != Integrator::Takes::ode)
     throw std::invalid_argument(
         "--integrator " + o.integrator +
@@ -39,7 +39,7 @@ int drift(const Options& o, const DriftOptions& d) {
   request.beta = o.beta;
   request.penalty = o.penalty;
   request.reference = reference.get();
-  // One form that grinds to a halt must not keep the others' results from the user.
+  // A form that grinds to a halt must not hold up the others.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);
   request.timing = timing_named(o.timing);
   request.threads = threads_of(0);

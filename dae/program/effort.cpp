@@ -14,7 +14,7 @@
 namespace momenta::program {
 namespace {
 
-/// Output times of the scene, or as asked for.
+/// Output times of the options, else of the scene.
 std::vector<double> times_of(const Options& o, const RunDefaults& defaults) {
   const double end = o.end.value_or(defaults.end_time);
   const int samples = o.samples.value_or(defaults.samples);

@@ -1,6 +1,6 @@
 #pragma once
-// The families of scenes that `momenta make` prints. The same family, n and plane give the same
-// text on every machine.
+// Families of scenes of `momenta make`. The same family, n and plane give the same text on every
+// machine.
 
 #include <span>
 
@@ -8,7 +8,7 @@
 
 namespace momenta::program {
 
-/// Where a planar mechanism lies: its x and y in the scene, gravity along its −y.
+/// Plane of a planar mechanism: its x and y in the scene, gravity along its −y.
 struct Plane {
   Triple rpy{};  ///< axes of the plane in the scene's: Rz(y) Ry(p) Rx(r)
   Triple from_plane(const Triple& v) const;
@@ -16,10 +16,10 @@ struct Plane {
 
 struct Family {
   const char* name;
-  const char* what;  ///< in a few words; N is the size
+  const char* what;  ///< a few words; N is the size
   int least, most, usual;
-  void (*print)(int n);                             ///< in space; null: planar
-  void (*print_in)(int n, const Plane&) = nullptr;  ///< in a plane
+  void (*print)(int n);                             ///< printer in space; null: planar
+  void (*print_in)(int n, const Plane&) = nullptr;  ///< printer in a plane
 };
 
 std::span<const Family> families();

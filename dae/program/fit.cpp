@@ -1,4 +1,4 @@
-// The verb `fit`: parameters of a scene for which its mechanism does what is wanted.
+// The verb `fit`: parameters that bring a scene's mechanism to wanted poses.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/dae/report/fit_report.h>
@@ -89,7 +89,7 @@ int fit(const Options& o, const FitOptions& options) {
   ProgressLine line(o.quiet);
   request.progress = search_progress(o, line, options.starts, "least cost ");
   Options asked = o;
-  asked.reference = file;  // what a study is told by
+  asked.reference = file;  // distinguishes studies
   const auto journal = keep_runs(asked);
   request.journal = journal.get();
   const FitResult result = momenta::fit(family, wanted, request);

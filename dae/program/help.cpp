@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t text_column = 26;
 
-/// The words of `text` from where `line` stands on, later lines indented; lines of `text` stay.
+/// Words of `text` after `line`, further lines indented; line breaks stay.
 std::string wrapped(std::string line, const std::string& text, std::size_t indent) {
   std::string out;
   std::istringstream lines(text);
@@ -25,7 +25,7 @@ std::string wrapped(std::string line, const std::string& text, std::size_t inden
       line.assign(indent, ' ');
     }
     std::istringstream words(part);
-    bool spaced = true;  // nothing, or blanks, before the next word
+    bool spaced = true;  // nothing or blanks before the next word
     for (std::string word; words >> word; spaced = false) {
       if (!spaced && columns_of(line) + 1 + columns_of(word) > screen_width) {
         out += line + "\n";
@@ -48,7 +48,7 @@ std::string name_and_type(const CLI::Option& o) {
   return shown_name(o) + (is_flag(o) || !o.nonpositional() ? "" : " " + o.get_type_name());
 }
 
-/// Options that have one row: the text of the first speaks of both.
+/// Options in one row, with the first one's text.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> one_row{{
     {"--project", "--no-project"},
     {"--baumgarte-alpha", "--baumgarte-beta"},
@@ -64,7 +64,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> one_row{
     {"--threads", "--task"},
 }};
 
-/// The option in the row of this one; null: none.
+/// The second option in this row; null: none.
 const CLI::Option* beside(const CLI::App& verb, const CLI::Option& option) {
   for (const auto& [first, second] : one_row)
     if (shown_name(option) == first) return verb.get_option_no_throw(std::string(second));

@@ -1,6 +1,6 @@
 #pragma once
-// Help for a screen of 80 columns, the man page and the completions. All three are made from the
-// options themselves, so that they cannot differ from what the program accepts.
+// Help for a screen of 80 columns, the man page and completions, all made from the options
+// themselves: they cannot differ from what the program accepts.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -11,14 +11,13 @@ inline constexpr std::size_t screen_width = 80;
 inline constexpr const char* exit_status =
     "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.";
 
-/// Help of the program or of one verb.
 std::string screen_help(const CLI::App& app);
 /// momenta(1), in roff.
 std::string man_page(const CLI::App& program);
-/// A script for "bash", "zsh" or "fish" that completes verbs, options and what they take.
+/// Script for "bash", "zsh" or "fish": completes verbs, options and values.
 std::string completion_script(const CLI::App& program, const std::string& shell);
 
-/// Columns a text takes on a terminal: marks above letters, as in Φ̇, take none.
+/// Columns on a terminal: marks above letters, as in Φ̇, take none.
 std::size_t columns_of(std::string_view text);
 
 }  // namespace momenta::program

@@ -1,4 +1,4 @@
-// The verb `fit` with a measured motion: parameters for which a run comes nearest to it.
+// The verb `fit` with a measured motion: parameters for the run nearest to it.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/dae/report/identification_report.h>
@@ -44,7 +44,7 @@ int identify_verb(const Options& o, const FitOptions& options,
   ProgressLine line(o.quiet);
   request.progress = search_progress(o, line, options.starts, "least cost ");
   Options asked = o;
-  asked.reference = file;  // what a study is told by
+  asked.reference = file;  // distinguishes studies
   const auto journal = keep_runs(asked);
   request.journal = journal.get();
   const Identification result = identify(family, measured, request);

@@ -14,7 +14,7 @@ namespace momenta::program {
 namespace {
 
 constexpr std::chrono::milliseconds least_between{200};
-constexpr int times_its_cost = 20;  // so that checkpoints take a twentieth of the time at most
+constexpr int times_its_cost = 20;  // checkpoints take a twentieth of the time at most
 
 std::string last_line(const std::string& text) {
   const std::size_t before =
@@ -44,7 +44,7 @@ void KeptRun::read(const std::string& text, std::size_t columns) {
     return at != all.end() && at->is_string() ? at->get<std::string>() : std::string();
   };
   if (told("study") != study_.digest) {
-    // The results of a run that was interrupted are replaced as any are.
+    // Results of an interrupted run are replaced like others.
     if (!std::filesystem::exists(part_)) return;
     throw std::invalid_argument(file_.string() + " belongs to an unfinished run, '" +
                                 told("command") +
@@ -99,7 +99,7 @@ void KeptRun::note(TrajectoryFile& trajectory, const std::vector<double>& row,
                            {"run", record_of(make())}};
   using Text = nlohmann::json::error_handler_t;
   const auto problem = atomic_write(file_, all.dump(-1, ' ', false, Text::replace));
-  failed_ = problem.has_value();  // the last one stays
+  failed_ = problem.has_value();  // the last checkpoint stays
   if (failed_) std::fprintf(stderr, "momenta: %s\n", problem->c_str());
   const auto now = Clock::now();
   next_ = now + std::max<Clock::duration>(least_between, times_its_cost * (now - began));
@@ -109,7 +109,7 @@ void KeptRun::remove() const {
   if (o_.out.empty()) return;
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
-  // Of a run that was killed as it wrote one, where none is written any more.
+  // Left by a run that was killed while writing.
   std::filesystem::remove(file_.string() + ".part", ignored);
 }
 

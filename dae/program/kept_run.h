@@ -1,6 +1,6 @@
 #pragma once
-// A run that can continue after it was killed. While it runs, DIR/checkpoint.json has a checkpoint
-// and the length of the trajectory up to it; the file is replaced as a whole from time to time.
+// A run that can continue after a kill. DIR/checkpoint.json has a checkpoint and the trajectory's
+// length up to it; it is replaced as a whole from time to time.
 
 #include <momenta/dae/report/trajectory_file.h>
 #include <momenta/dae/study/journal.h>
@@ -15,21 +15,20 @@ namespace momenta::program {
 
 class KeptRun {
  public:
-  /// Looks for what a run of the same command has left in --out; rows have so many columns.
+  /// Looks in --out for a run of the same command; rows have `columns` columns.
   /// @throws std::invalid_argument where another command was killed there
   KeptRun(const Options& o, std::size_t columns);
 
-  /// Where the run goes on; null: at its start.
+  /// Where to continue; null: at the start.
   const Checkpoint* from() const { return from_ ? &*from_ : nullptr; }
-  /// How the trajectory begins then; else empty.
+  /// Beginning of the trajectory, if continued; else empty.
   const std::string& trajectory() const { return trajectory_; }
-  /// The directory is this process's own: tells that the run goes on, or why it begins anew, and
-  /// removes what is of no use.
+  /// Takes the directory: reports whether the run continues, and removes useless files.
   void begin();
-  /// Between two steps, after a row: replaces the checkpoint where it is time to.
+  /// Replaces the checkpoint now and then; between two steps, after a row.
   void note(TrajectoryFile& trajectory, const std::vector<double>& row,
             const std::function<Checkpoint()>& make);
-  /// The run is over and its results are written.
+  /// Removes the checkpoint of a run whose results are written.
   void remove() const;
 
  private:

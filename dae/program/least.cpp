@@ -47,7 +47,7 @@ int least_verb(const Options& o, const FitOptions& options, std::vector<FittedPa
     std::vector<ResultFile> files{{o.out / "fit.json", text},
                                   {o.out / "fitted.toml", family.text(result.found)}};
     if (request.way) {
-      // The picture is that of a fit to which nothing is wanted.
+      // The picture is that of a fit without wanted poses.
       FitResult fitted;
       fitted.own = result.own;
       fitted.found = result.found;

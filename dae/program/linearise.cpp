@@ -17,7 +17,7 @@
 namespace momenta::program {
 namespace {
 
-/// Which state is asked for, at the most one of them.
+/// Refuses options for more than one state.
 void expect_one_state(const LineariseOptions& l) {
   const int asked = (l.state.empty() ? 0 : 1) + (l.time ? 1 : 0) + (l.after ? 1 : 0) +
                     (l.equilibrium.empty() ? 0 : 1);

@@ -33,7 +33,7 @@ int answer(int argc, char** argv) {
       "Constrained multibody systems on canonical momenta: open chains, closed loops, "
       "and how far they drift.");
   app.require_subcommand(1);
-  // Before the verbs: they take it over.
+  // First: verbs inherit it.
   app.formatter_fn(
       [](const CLI::App* of, std::string, CLI::AppFormatMode) { return screen_help(*of); });
   app.set_help_flag("--help", "This text");
@@ -105,7 +105,7 @@ int answer(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A file that may grow no further is a sentence, like a full disk.
+  // A file at its size limit is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   const int status = answer(argc, argv);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;

@@ -1,4 +1,4 @@
-// The verb `make`: the list of the families of scenes, which are printed as TOML.
+// The verb `make`: the list of families of scenes, printed as TOML.
 
 #include <algorithm>
 #include <array>

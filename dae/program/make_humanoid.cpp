@@ -1,9 +1,8 @@
 // A floating person of 75 kg and 1.75 m with 30 hinges: 6 per leg, 7 per arm, 3 in the torso, 1 in
 // the neck. x forward, y left, z up. Masses and lengths are fractions of the whole as in D. Winter,
 // Biomechanics and Motor Control of Human Movement, table 4.1 and figure 4.1; moments of inertia
-// are those of the shapes. Between hinges at one place there are small balls, which take a share of
-// the mass of the segment that the hinges carry, so that no body is massless. Springs and dampers
-// hold the pose.
+// are those of the shapes. Small balls between hinges at one place take a share of the mass of the
+// segment that the hinges carry, so that no body is massless. Springs and dampers hold the pose.
 
 #include "families.h"
 #include "scene_text.h"
@@ -12,9 +11,8 @@ namespace momenta::program {
 namespace {
 
 constexpr double person = 75, height = 1.75;
-constexpr double share = 0.05;  // of a segment's mass, in each ball
+constexpr double share = 0.05;  // part of a segment's mass in each ball
 
-/// A hinge and how firmly it is held.
 void hinge(const std::string& name, const std::string& parent, const std::string& child,
            const Triple& at, const char* axis, double stiffness, double position = 0,
            double velocity = 0) {

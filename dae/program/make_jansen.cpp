@@ -32,7 +32,7 @@ double angle(const Point& from, const Point& to) {
   return std::atan2(to.y - from.y, to.x - from.x);
 }
 
-/// The point at r from p and at s from q, to the left of the way from p to q.
+/// The point at r from p and at s from q, left of the way from p to q.
 Point meet(const Point& p, double r, const Point& q, double s) {
   const double dx = q.x - p.x, dy = q.y - p.y, way = std::hypot(dx, dy);
   const double along = (way * way + r * r - s * s) / (2 * way);
@@ -82,7 +82,7 @@ void print_jansen_legs(int n, const Plane& plane) {
   print_joint(hinge("axle", "ground", "crank", {0, 0, 0}, 0, 2 * pi, plane));
   for (int leg = 1; leg <= n; ++leg) {
     const double phase = 2 * pi * (leg - 1) / n;
-    // P of this leg: the crank stands at 0, and the pin sits at `phase` on it.
+    // P of this leg: the crank stands at 0, the pin at `phase` on it.
     const Point P{m * std::cos(phase), m * std::sin(phase)};
     const Point E = meet(B, b, P, j), G = meet(P, k, B, c);
     const double upper = angle(B, E);

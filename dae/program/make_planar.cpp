@@ -1,5 +1,5 @@
-// Planar mechanisms, in a plane of any orientation: only the joints at the ground and gravity
-// depend on it. Angles are measured from the x of the plane, from parent to child.
+// Planar mechanisms in a plane of any orientation: only gravity and the joints at the ground depend
+// on it. Angles start at the plane's x, from parent to child.
 
 #include <cmath>
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Triple down{0, 0, -9.81};
 
-/// y and z by turns: the axes of a universal joint, taken apart along a chain.
+/// y and z by turns: axes of universal joints, split along a chain.
 const char* by_turns(int i) {
   return i % 2 == 0 ? "y" : "z";
 }

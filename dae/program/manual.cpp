@@ -1,5 +1,5 @@
-// The man page momenta(1) in roff, made from the options themselves. An option that is the same in
-// several verbs is listed once, with their names.
+// The man page momenta(1) in roff, made from the options themselves. An option shared by several
+// verbs is listed once, with their names.
 
 #include <algorithm>
 #include <sstream>
@@ -11,7 +11,7 @@
 namespace momenta::program {
 namespace {
 
-/// Text that roff prints as it stands.
+/// Text for roff, printed unchanged.
 std::string plain(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -37,7 +37,7 @@ std::string bold(const std::string& text) {
   return "\\fB" + plain(text) + "\\fR";
 }
 
-/// "--step S" with the name bold and what it takes in italics.
+/// "--step S" with bold name and italic value.
 std::string tag(const CLI::Option& o) {
   if (!o.nonpositional()) return "\\fI" + plain(shown_name(o)) + "\\fR";
   return bold(shown_name(o)) + (is_flag(o) ? "" : " \\fI" + plain(o.get_type_name()) + "\\fR");

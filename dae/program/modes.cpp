@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_films = 12;
 
-/// The modes that a page shows swinging: as many as it holds.
+/// Films as many modes as a page holds.
 void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& result) {
   if (mechanism.scene().lagrangian || mechanism.scene().bodies.size() > most_bodies_drawn) return;
   const auto& modes = result.spectrum.modes;
@@ -35,9 +35,9 @@ void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& res
 int modes(const Options& o, const ModesOptions& m) {
   const CpuLimit limit(o.cpu_limit.value_or(0));
   Scene scene = read(o);
-  // A steady motion is that of all drives.
+  // A steady motion includes all drives.
   if (m.drives == "held" && m.equilibrium != "steady") scene = held_at_start(std::move(scene));
-  // --kkt is the route to the modes here.
+  // --kkt is the route to the modes.
   const Mechanism mechanism(std::move(scene), {.algebra = mechanism_options(o).algebra});
   expect_own_results(o.out, "modes.csv");
   const Assembly a = assemble(mechanism);

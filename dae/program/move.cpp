@@ -1,4 +1,4 @@
-// The verb `move`: the mechanism taken through its poses by one coordinate.
+// The verb `move`: the mechanism moved through its poses by one coordinate.
 
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/report/move_report.h>

@@ -1,5 +1,5 @@
 #pragma once
-// What several verbs take from the command line, and the exit status.
+// Options that several verbs share, and the exit status.
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/report/meshes.h>
@@ -17,17 +17,17 @@ namespace momenta::program {
 inline constexpr int done = 0, run_failed = 1, bad_input = 2;
 
 struct Options {
-  std::string command;  ///< as typed
-  std::string asked;    ///< the verb and its options, but for where and how results are told
-  std::vector<std::string> given;             ///< names of the options that were given
-  std::vector<std::filesystem::path> inputs;  ///< files that they name to be read
+  std::string command;                        ///< words as typed
+  std::string asked;                          ///< the verb and options, but for output
+  std::vector<std::string> given;             ///< names of options
+  std::vector<std::filesystem::path> inputs;  ///< files named for reading
   std::filesystem::path scene;
-  ReadOptions reading;           ///< what a URDF does not say
+  ReadOptions reading;           ///< values missing in a URDF
   std::vector<std::string> set;  ///< numbers in place of the scene's: PLACE=NUMBER
-  std::string stops;             ///< at limits: STIFFNESS[,DAMPING]; empty: none
+  std::string stops;             ///< stops at limits: STIFFNESS[,DAMPING]; empty: none
   std::string at;                ///< start values in place of the scene's; empty: its own
   std::string algebra = "auto", kkt = "auto", cut = "auto";
-  std::string level;  ///< of the kernels; empty: the machine's best, or MOMENTA_LEVEL
+  std::string level;  ///< level of the kernels; empty: the machine's best, or MOMENTA_LEVEL
   std::string form = "momentum", integrator, gauge;
   double rtol = 1e-8;
   std::optional<double> atol, step, end;
@@ -40,31 +40,31 @@ struct Options {
   std::string timing = "rounds";
   std::filesystem::path reference, out;
   std::string figures;                        ///< svg or none
-  std::string data = "csv";                   ///< of run: csv or hdf5
-  bool reactions = false;                     ///< of run: those of joints are columns
-  std::size_t mesh_bytes = usual_mesh_bytes;  ///< of a page
+  std::string data = "csv";                   ///< for run: csv or hdf5
+  bool reactions = false;                     ///< for run: columns of joints' reactions
+  std::size_t mesh_bytes = usual_mesh_bytes;  ///< bytes of meshes in a page
   bool json = false, quiet = false;
 };
 
 void add_scene(CLI::App& verb, Options& o);
-/// The scene alone, with what a URDF does not say.
+/// Without options of runs, but with values missing in a URDF.
 void add_scene_file(CLI::App& verb, Options& o, bool required = true);
 void add_level(CLI::App& verb, Options& o);
-/// Of verbs that time what they ran.
+/// Options of verbs that time their runs.
 void add_timing(CLI::App& verb, Options& o);
-/// `cpu_limit`: that of a run of this verb, in words.
+/// `cpu_limit`: default for this verb, in words.
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);
-/// Of verbs without runs (cpu_limit.h); `usual`: theirs, in words.
+/// Option of verbs without runs (cpu_limit.h); `usual`: default, in words.
 void add_cpu_limit(CLI::App& verb, Options& o, const char* usual = "none");
-/// Of verbs that write pages.
+/// Option of verbs that write pages.
 void add_mesh_bytes(CLI::App& verb, Options& o);
 
 /// "a,b,c" as a list.
 std::vector<std::string> names_in(const std::string& list);
 
-/// "A", or "A=1,B=-0.5": names and amounts other than zero, 1 where none stands. `like`: what was
-/// expected. @throws std::invalid_argument
+/// "A", or "A=1,B=-0.5": names and amounts other than zero, 1 by default. `like`: for messages.
+/// @throws std::invalid_argument
 std::vector<std::pair<std::string, double>> amounts_in(const std::string& option,
                                                        const std::string& list,
                                                        const std::string& like);

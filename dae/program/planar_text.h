@@ -1,5 +1,5 @@
 #pragma once
-// The joints of planar mechanisms, as text.
+// Joints of planar mechanisms, as text.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace momenta::program {
 
-/// A hinge about the plane's normal; `at` in axes of the parent, of the plane on the ground.
+/// A hinge about the plane's normal; `at` in axes of the parent, on the ground of the plane.
 JointText hinge(const std::string& name, const std::string& parent, const std::string& child,
                 const Triple& at, double angle, double rate, const Plane& plane);
 

@@ -1,23 +1,22 @@
 #pragma once
-// Where a study is, for who waits at a terminal; and that it was interrupted.
+// Progress of a study on a terminal, and its interruption.
 
 #include <string>
 
 namespace momenta::program {
 
-/// From now on SIGINT and SIGTERM are noted, for verbs that look whether one came; a second one of
-/// its kind ends the program where it stands.
+/// Notes SIGINT and SIGTERM for interrupted(); a second one ends the program at once.
 void watch_signals();
-/// True once one came: runs stop at their next step and keep what they have.
+/// Whether a signal came: runs stop at their next step and keep results.
 bool interrupted();
 
-/// One line on standard error that rewrites itself on a terminal, and stays silent elsewhere.
+/// One line on standard error, rewritten on a terminal, silent elsewhere.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
   ~ProgressLine();
   void show(const std::string& text);
-  /// Shows where a study is; false once it is interrupted.
+  /// False once interrupted.
   bool going(int number, int total, const std::string& label, double fraction);
 
  private:

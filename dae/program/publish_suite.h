@@ -7,8 +7,7 @@ namespace momenta::program {
 
 struct Options;
 
-/// Calls `run`, which fills the result, prints it and writes its files where --out says; the exit
-/// status.
+/// `run` fills the result, prints it and writes its files to --out. Returns the exit status.
 int publish_suite(const Options& o, SuiteResult& result, bool own_references,
                   const std::function<void(const SuiteRequest&)>& run);
 

@@ -17,7 +17,7 @@
 namespace momenta::program {
 namespace {
 
-/// The numbers still to be handed out.
+/// Numbers not yet handed out.
 class Queue {
  public:
   Queue(const std::vector<std::size_t>& wanted, const std::function<bool()>& going_on)
@@ -29,7 +29,7 @@ class Queue {
     return wanted_[i];
   }
   void end() { next_ = wanted_.size(); }
-  /// Ends the study with what was thrown on any of its threads.
+  /// Ends the study with an exception of a thread.
   void fail(std::exception_ptr thrown) {
     end();
     const std::lock_guard lock(turn_);
@@ -53,8 +53,8 @@ class Queue {
 
 namespace {
 
-// A message of a rank that asks: empty at first, then "NUMBER RECORD", or "! sentence" of what it
-// threw. The answer: a number, or none_left.
+// Message of a rank that asks: first empty, then "NUMBER RECORD", or "! sentence" for an exception.
+// Answer: a number, or none_left.
 constexpr int tag = 1;
 constexpr long long none_left = -1;
 
@@ -72,7 +72,7 @@ std::optional<std::size_t> asked(const std::string& message) {
   return static_cast<std::size_t>(number);
 }
 
-/// One message, if there is one; with the rank it is from.
+/// A waiting message, if any, and its rank.
 std::optional<std::pair<int, std::string>> received() {
   int there = 0, size = 0;
   MPI_Status status;
@@ -84,8 +84,8 @@ std::optional<std::pair<int, std::string>> received() {
   return std::pair(status.MPI_SOURCE, std::move(text));
 }
 
-/// Answers the other ranks until every one has been told that nothing is left. Looks for messages
-/// now and then: waiting inside MPI would keep a processor busy.
+/// Answers other ranks until all know that no number is left. Polls: waiting inside MPI would keep
+/// a processor busy.
 void hand_out(Queue& queue, int others,
               const std::function<void(std::size_t, const std::string&)>& keep) {
   while (others > 0) {
@@ -117,7 +117,7 @@ Ranks::Ranks() {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &count_);
   if (rank_ == 0) return;
-  // One voice: every rank meets the same scene and the same mistakes.
+  // Only rank 0 prints: every rank meets the same mistakes.
   if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
     throw std::runtime_error("/dev/null cannot be written");
 }

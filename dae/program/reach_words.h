@@ -1,5 +1,5 @@
 #pragma once
-// How far drives can go, in the words of `momenta check`.
+// Reach of drives, in words of `momenta check`.
 
 #include <momenta/dae/assembly/drive_reach.h>
 
@@ -8,7 +8,7 @@
 
 namespace momenta::program {
 
-/// Whether anything can be told: drives beside loops.
+/// Whether there are drives beside loops.
 bool has_reach(const Mechanism& mechanism);
 /// One line.
 std::string in_words(const DriveReach& reach, double end);

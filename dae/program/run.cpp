@@ -29,7 +29,7 @@
 namespace momenta::program {
 namespace {
 
-constexpr int most_drawn = 4000;  // samples that a page is made of
+constexpr int most_drawn = 4000;  // samples in a page
 
 void print_singular_crossings(const RunResult& result) {
   constexpr std::size_t most = 12;
@@ -47,7 +47,7 @@ void print_singular_crossings(const RunResult& result) {
     }
 }
 
-/// What `check` says of the start, and what was met on the way.
+/// Rank at the start, and singular poses of the run.
 void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& result) {
   if (a.rank < mechanism.m()) {
     constexpr std::size_t most = 6;
@@ -66,7 +66,7 @@ void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& 
         result.weak_evaluations, result.counters.evaluations);
 }
 
-/// Each event of the scene with how often it was met, and when.
+/// Events with number and times.
 void print_events(const Scene& scene, const RunResult& result) {
   constexpr std::size_t most = 8;
   for (std::size_t i = 0; i < scene.events.size(); ++i) {
@@ -89,7 +89,7 @@ void print_events(const Scene& scene, const RunResult& result) {
   if (result.status == "event") std::printf("%s\n", result.reason.c_str());
 }
 
-/// What happened at each rigid stop: impacts, and from when to when it held its coordinate.
+/// Impacts of rigid stops, and times at which they held their coordinates.
 void print_stops(const RunResult& result) {
   std::map<std::pair<std::string, double>, std::vector<const StopContact*>> by_stop;
   for (const StopContact& s : result.stops) by_stop[{s.joint, s.limit}].push_back(&s);
@@ -109,7 +109,7 @@ void print_stops(const RunResult& result) {
   }
 }
 
-/// "C.lambda1, C.lambda2", and of the samples that they are not unique at how many.
+/// "C.lambda1, C.lambda2": columns that are not unique, and at how many samples.
 void print_undetermined(const RunResult& result) {
   std::map<long, std::string> by_samples;
   for (const RunResult::Undetermined& u : result.undetermined) {
@@ -124,8 +124,7 @@ void print_undetermined(const RunResult& result) {
                 names.c_str());
 }
 
-/// The files of a run: the trajectory, written while it goes on, and a summary for which there is
-/// room whatever happens.
+/// The files of a run: the trajectory, written during the run, and a summary with reserved room.
 class RunFiles {
  public:
   /// @throws std::invalid_argument, std::runtime_error
@@ -145,9 +144,9 @@ class RunFiles {
     last_row_ = row;
     return trajectory_->write(row);
   }
-  /// Where the run goes on; null: at its start.
+  /// Where to continue; null: at the start.
   const Checkpoint* from() const { return kept_.from(); }
-  /// Between two steps.
+  /// Takes a checkpoint between two steps.
   void note(const std::function<Checkpoint()>& make) {
     if (trajectory_) kept_.note(*trajectory_, last_row_, make);
   }
@@ -155,15 +154,15 @@ class RunFiles {
   /// Why rows could not be written; empty: all were.
   std::string problem() const { return trajectory_ ? trajectory_->problem() : ""; }
 
-  /// Gives all files their names, those of `others` too where there is room for them; else prints
-  /// the sentence and returns false. `over`: the run does not go on from where it was left.
+  /// Gives files their names, `others` too if there is room; else prints the sentence and returns
+  /// false. `over`: the run will not continue.
   bool finish(const std::string& summary, const std::vector<ResultFile>& others, bool over) {
     if (!trajectory_) return true;
-    const bool told = !problem().empty();  // as the reason why the run stopped
+    const bool told = !problem().empty();  // why the run ended
     if (!trajectory_->finish(summary)) return !told && complain(problem());
     summary_->append(summary);
     const bool all = summary_->put_in_place() || complain(summary_->problem());
-    // What stands there of an earlier run would contradict them.
+    // A file of an earlier run would contradict them.
     std::error_code ignored;
     std::filesystem::remove(o_.out / (o_.data == "hdf5" ? "trajectory.csv" : "run.h5"), ignored);
     if (write_results(others)) {
@@ -206,12 +205,12 @@ int run(const Options& o) {
   request.reactions = o.reactions;
   request.multipliers = true;
   request.events = true;
-  // What came before counts.
+  // Time before the run counts.
   if (limit > 0) request.max_cpu_seconds = std::max(1e-3, limit - thread_seconds());
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
   RunFiles files(o, *mechanism, s);
-  // What the page draws is a part of it; memory does not grow with the trajectory.
+  // The page draws a part; memory does not grow with the trajectory.
   if (o.data == "hdf5") request.keep_every = 1 + s.samples / most_drawn;
   request.on_row = [&](const std::vector<double>& row) { return files.write(row); };
   request.from = files.from();
@@ -225,8 +224,8 @@ int run(const Options& o) {
   watch_signals();
   StudyResult study;
   {
-    // A run looks at its time between steps, and one step of a large mechanism may take long: it is
-    // cut short half a limit later, a second at least.
+    // A run checks its time between steps, and one step of a large mechanism may take long: it is
+    // stopped half a limit later, at least a second.
     const double more = request.max_cpu_seconds + std::max(1.0, 0.5 * limit);
     const CpuLimit within_steps(limit > 0 ? more : 0, limit - request.max_cpu_seconds);
     study.runs.push_back(run_form(*mechanism, a.start, request));

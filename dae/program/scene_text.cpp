@@ -16,7 +16,7 @@ bool zero(const Triple& v) {
   return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-/// What joints and loops have alike: names and ends, rotation and axis.
+/// Common keys of joints and loops: names and ends, rotation and axis.
 template <class Text>
 void open_frames(const char* table, const Text& t) {
   put("\n[[" + std::string(table) + "]]\nname = \"" + t.name + "\"\nkind = \"" + t.kind +

@@ -1,5 +1,5 @@
 #pragma once
-// Writes scenes as TOML, table by table on standard output, so that a scene of any size needs no
+// Writes scenes as TOML, table by table on standard output, so that scenes of any size need no
 // memory. Numbers have the fewest digits that read back as the same double.
 
 #include <array>
@@ -11,26 +11,25 @@ namespace momenta::program {
 
 using Triple = std::array<double, 3>;
 
-/// The comment on top, name, gravity and [run].
+/// Comment on top, name, gravity and [run].
 void print_head(const std::string& comment, const std::string& name, const Triple& gravity,
                 double end);
-/// The same for loops that pass singular poses: positions are put back on them after every step.
+/// The same for loops that pass singular poses: positions are corrected after every step.
 void print_corrected_head(const std::string& comment, const std::string& name,
                           const Triple& gravity, double end);
 
-/// A cylinder that reaches from the body origin along `axis` ("x", "-z", …).
+/// A cylinder from the body origin along `axis` ("x", "-z", …).
 void print_cylinder(const std::string& name, double mass, double length, double radius,
                     const std::string& axis);
 /// A box of these edges about `com`, body axes.
 void print_box(const std::string& name, double mass, const Triple& size, const Triple& com);
-/// The joint that assembly leaves as it starts.
 void print_held(const std::string& joint);
 
 /// A body of moment of inertia `planar` about z through `com`.
 void print_plate(const std::string& name, double mass, const Triple& com, double planar);
 /// A slender rod from the body origin along x.
 void print_rod(const std::string& name, double mass, double length);
-/// A solid ball about `com`.
+/// Solid, about `com`.
 void print_ball(const std::string& name, double mass, double radius, const Triple& com);
 
 struct JointText {
@@ -57,15 +56,15 @@ std::string triple_text(const Triple& v);
 /// "word" and a number.
 std::string numbered(const char* word, int number);
 
-/// Numbers that are the same on every machine.
+/// Random numbers, the same on every machine.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : bits_(seed) {}
-  /// In [low, high).
+  /// A number in [low, high).
   double between(double low, double high) {
     return low + (high - low) * (static_cast<double>(bits_() >> 11) / 9007199254740992.0);
   }
-  /// Of unit length.
+  /// A vector of length one.
   Triple direction();
 
  private:

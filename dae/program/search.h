@@ -1,6 +1,5 @@
 #pragma once
-// What `fit` does alike for wanted poses, for a measured motion and for a formula that is to be
-// least.
+// Common parts of `fit` for wanted poses, measured motions and formulas to minimise.
 
 #include <momenta/dae/report/fit_picture.h>
 
@@ -13,9 +12,8 @@
 
 namespace momenta::program {
 
-/// The way that is asked for.
 SweptWay way_of(const FitOptions& options);
-/// The scene as text, of runs: integrated as it is written.
+/// The scene's text for runs, integrated as it is written.
 SceneText run_text(const Options& o);
 /// `fit` with a measured motion.
 int identify_verb(const Options& o, const FitOptions& options,
@@ -24,12 +22,12 @@ int identify_verb(const Options& o, const FitOptions& options,
 int least_verb(const Options& o, const FitOptions& options, std::vector<FittedParameter> parameters,
                const ParametricMechanism& family);
 
-/// Shows the start under way and the least so far, as `what`; false at an interruption, or beyond
+/// Shows the start under way and the least value so far, as `what`; false at an interruption or
 /// --cpu-limit. Both references must outlive it.
 std::function<bool(int, double)> search_progress(const Options& o, ProgressLine& line, int starts,
                                                  const std::string& what);
 
-/// What the page shows: the mechanism found and the one before, `frames` of them. `name`: of the
+/// The page's study: the mechanism found and the one before, in `frames` frames. `name`: of the
 /// scene.
 StudyResult shown_search(const Options& o, const FitPicture& picture, int frames,
                          const std::string& name);

@@ -51,7 +51,7 @@ void take_starts(const std::string& text, SectionRequest& request) {
   request.values.push_back(numbers[1]);
 }
 
-/// The column of an axis, with its unit. @throws std::invalid_argument
+/// Column of an axis, with its unit. @throws std::invalid_argument
 std::string column(const std::vector<std::string>& columns, const std::string& name) {
   if (const auto at = column_named(columns, name)) return columns[*at];
   throw std::invalid_argument("--axes: '" + name + "' is no column of the trajectory, expected " +

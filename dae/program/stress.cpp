@@ -13,7 +13,7 @@
 namespace momenta::program {
 namespace {
 
-/// Forms × integrators that go together; a form for which none is named takes its own.
+/// Pairs that fit; a form without any of its own takes its usual method.
 std::vector<Contestant> contestants_of(const std::vector<std::string>& forms,
                                        const std::vector<std::string>& methods) {
   std::vector<Contestant> all;

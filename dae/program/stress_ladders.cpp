@@ -20,7 +20,7 @@ std::string power(double x) {
   return x >= 1e-3 && x < 1e5 ? compact(x, 5) : scientific(x, 1);
 }
 
-/// A scene that the program carries, to an end that leaves time for all forms.
+/// A built-in scene, with an end that leaves time for all forms.
 Scene built_in(std::string_view text, double end) {
   Scene scene = parse_scene(text, "built-in scene");
   scene.run.end_time = end;
@@ -43,7 +43,7 @@ void weigh(Scene& scene, const std::string& body, double factor) {
     }
 }
 
-/// Scenes along values of something: `set` makes the scene of a value.
+/// A ladder of scenes: `set` makes that of a value.
 template <class Set>
 Ladder along(const std::string& name, const Factors& values, const std::string& unit, Set&& set) {
   Ladder ladder{name, {}, true};
@@ -144,7 +144,7 @@ Ladder long_chains() {
   });
 }
 
-/// The first cells of the row of four-bars: bodies and joints are numbered.
+/// The first cells of the row of four-bars, whose bodies and joints are numbered.
 Scene row_of_four_bars(int cells) {
   Scene s = built_in(embedded::n_four_bar(), 10);
   const auto beyond = [&](const std::string& body) {
@@ -274,12 +274,12 @@ std::vector<Ladder> ladders_of(const Scene& scene, const std::vector<std::string
 std::vector<Contestant> usual_contestants() {
   std::vector<Contestant> all;
   for (const std::string& form : form_names()) {
-    if (form == "acceleration") continue;  // with correction after each step it is `projected`
+    if (form == "acceleration") continue;  // with correction after each step: `projected`
     all.push_back({form, ""});
     if (form == "momentum" || form == "baumgarte") all.push_back({form, "bdf"});
     if (form == "momentum-index2" || form == "stabilised-index2") all.push_back({form, "radau5"});
   }
-  // What remains of the acceleration forms where there are no loops.
+  // The acceleration forms without loops.
   all.push_back({"acceleration", ""});
   all.push_back({"acceleration", "bdf"});
   return all;

@@ -1,5 +1,5 @@
 #pragma once
-// The ladders of `momenta stress`: the built-in ladders, and those of a given scene.
+// Ladders of `momenta stress`, built-in and for a given scene.
 
 #include <momenta/dae/study/stress_study.h>
 
@@ -8,11 +8,11 @@
 
 namespace momenta::program {
 
-/// Springs, dampers, mass ratios, sizes, speeds and durations to extremes, and scenes that are hard
-/// by their nature: redundant, singular, stiff, chaotic, long, or without any motion at all.
+/// Springs, dampers, mass ratios, sizes, speeds and durations to extremes, and difficult scenes:
+/// redundant, singular, stiff, chaotic, long, or without any motion.
 std::vector<Ladder> built_in_ladders();
 
-/// One scene along the directions named; empty: all that it has.
+/// Ladders of one scene in the directions named; empty: in all.
 /// @throws std::invalid_argument for an unknown name or a direction the scene lacks
 std::vector<Ladder> ladders_of(const Scene& scene, const std::vector<std::string>& along);
 

@@ -21,7 +21,7 @@
 namespace momenta::program {
 namespace {
 
-/// Keys of a study's cases: other studies have others.
+/// Keys of cases, unique to a study.
 class Keys {
  public:
   Keys(const Options& o, const SweepRequest& request) : study_(digest(request.text + o.asked)) {}
@@ -33,7 +33,7 @@ class Keys {
   std::string study_;
 };
 
-/// Of all cases those whose number leaves the rest `first` when divided by `tasks`.
+/// Cases whose number modulo `tasks` is `first`.
 struct Task {
   std::size_t first = 0, tasks = 1;
 
@@ -58,7 +58,7 @@ struct Task {
   }
 };
 
-/// What tasks of this study left in its directory. @throws std::invalid_argument
+/// Journals of this study's tasks in its directory. @throws std::invalid_argument
 std::vector<std::unique_ptr<Journal>> parts_in(const Options& o) {
   std::vector<std::unique_ptr<Journal>> parts;
   if (o.out.empty() || !std::filesystem::is_directory(o.out)) return parts;
@@ -79,7 +79,7 @@ std::vector<std::unique_ptr<Journal>> parts_in(const Options& o) {
   return parts;
 }
 
-/// What an earlier sample left and this study did not write anew.
+/// Removes files of an earlier sample that this study did not rewrite.
 void remove_other_statistics(const std::filesystem::path& out,
                              const std::vector<ResultFile>& written) {
   const bool sampled = std::filesystem::exists(out / "statistics.csv");
@@ -95,7 +95,7 @@ class Finished {
   Finished(std::size_t count, Keys of_cases, Journal* journal, ProgressLine& line)
       : cases_(count), keys_(std::move(of_cases)), journal_(journal), line_(line) {}
 
-  /// Takes what the journal and the parts have; the numbers of all others of this task.
+  /// Takes records of journal and parts; returns the task's other numbers.
   std::vector<std::size_t> wanted(const Task& task,
                                   const std::vector<std::unique_ptr<Journal>>& parts) {
     std::vector<std::size_t> numbers;
@@ -139,8 +139,8 @@ class Finished {
   std::mutex turn_;
 };
 
-/// The scene as TOML: its own text, so that what it leaves out may be varied too, or, of another
-/// format or started elsewhere, the text it converts to.
+/// The scene as TOML: its own text, whose omissions may vary too, or converted from another format
+/// or start.
 void take_scene(const Options& o, SweepRequest& request) {
   const Scene scene = read(o);
   const bool own = is_toml(o.scene) && o.at.empty();

@@ -35,7 +35,7 @@ std::string unknown_verb(const CLI::App& app, const std::string& word) {
          near(word, known);
 }
 
-/// What no option of a verb takes.
+/// A word that no option of a verb takes.
 std::string left_over(const CLI::App& verb, const std::string& word) {
   const std::string of = verb.get_name();
   if (!word.starts_with('-'))
@@ -49,7 +49,7 @@ std::string left_over(const CLI::App& verb, const std::string& word) {
          of + " --help" + near(name, known);
 }
 
-/// What an option takes, in words.
+/// Values of an option, in words.
 std::string taken_by(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   if (type == "N") return "a whole number";
@@ -78,7 +78,7 @@ std::string typed_wrong(const CLI::App& app, const CLI::ParseError& error,
     return "found " + (typed.empty() ? std::string("nothing") : reading::in_quotes(typed.front())) +
            ", expected a verb, or --help";
   if (is(CLI::ExitCodes::ExtrasError)) {
-    // They stand there from the last to the first; an option brings its value along.
+    // CLI11 has them in reverse order; options come with values.
     const std::string words = " " + behind(said, "expected: ") + " ";
     const auto is_left = [&](const std::string& word) {
       return words.find(" " + word + " ") != std::string::npos;

@@ -2,8 +2,8 @@
 // The values of an option, described by its type name, for help, the man page and completion:
 //
 //   a|b|c      one of these words
-//   FORM       a word in capitals stands for names the program knows: FORM, INTEGRATOR, FAMILY;
-//   SCENE      for a path: SCENE, FILE, DIR, STATE; else for what no list holds: S (seconds), N, X
+//   FORM       names that the program knows: FORM, INTEGRATOR, FAMILY; or a path: SCENE, FILE, DIR,
+//              STATE; or values without a list: S (seconds), N, X
 //   FORM,...   several, with commas between
 
 #include <momenta/core/text/near_name.h>
@@ -20,14 +20,14 @@ struct Values {
 
   std::vector<std::string> words;
   Paths paths = Paths::none;
-  bool several = false;  ///< with commas between
+  bool several = false;  ///< values with commas between
 };
 
 Values values_of(std::string type_name);
 
-/// The option takes one of these words: checked, and shown as its type name.
+/// One of these words, shown as type name.
 CLI::Option* one_of(CLI::Option* option, const std::vector<std::string>& words);
-/// The option takes a number greater than 0, shown as `type_name`.
+/// Greater than 0, shown as `type_name`.
 CLI::Option* positive(CLI::Option* option, const std::string& type_name);
 /// The option takes a number from `least` to `most`, shown as `type_name`.
 template <class Number>
@@ -46,18 +46,18 @@ CLI::Option* within(CLI::Option* option, const std::string& type_name, Number le
   return option->check(check)->type_name(type_name);
 }
 
-/// Verbs that users are told of, in the order they are listed.
+/// Documented verbs, in listing order.
 std::vector<const CLI::App*> verbs_of(const CLI::App& program);
-/// "--rtol"; of what stands without a dash "SCENE", or its words.
+/// "--rtol"; for positional options "SCENE", or their words.
 std::string shown_name(const CLI::Option& option);
 bool is_flag(const CLI::Option& option);
-/// What it does, and its default.
+/// Text with its default.
 std::string shown_text(const CLI::Option& option);
 /// "run SCENE [OPTIONS]"
 std::string synopsis_of(const CLI::App& verb);
-/// Whether one of these options takes what is called `word`, or several of it.
+/// Whether one of these options takes `word`, or several.
 bool any_takes(const std::vector<const CLI::Option*>& options, const std::string& word);
-/// Sentences that tell the forms and integrators, where these options take them.
+/// Lists of forms and integrators, if these options take them.
 std::vector<std::string> names_behind(const std::vector<const CLI::Option*>& options);
 
 }  // namespace momenta::program

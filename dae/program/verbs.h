@@ -1,5 +1,5 @@
 #pragma once
-// The verbs of the command line: what each takes, and what answers it.
+// Verbs of the command line, with their options and functions.
 
 #include <functional>
 
@@ -7,13 +7,13 @@
 
 namespace momenta::program {
 
-/// A verb with its options; `of_equations`: where it takes files of equations, what answers them.
+/// A verb with its options; `of_equations`: its function for files of equations, if any.
 struct Verb {
   CLI::App* app;
   std::function<int()> answer, of_equations = {};
 };
 
-/// Each adds its verb to the program; `app` and the options must outlive it.
+/// `app` and the options must outlive the verb.
 Verb add_check(CLI::App& app, Options& o);
 Verb add_assemble(CLI::App& app, Options& o);
 Verb add_run(CLI::App& app, Options& o);

@@ -1,4 +1,4 @@
-// Verbs that write scenes and texts: their options.
+// Options of verbs that write scenes and texts.
 
 #include "verbs.h"
 

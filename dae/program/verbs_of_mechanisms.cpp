@@ -1,4 +1,4 @@
-// Verbs that look at a mechanism without a run, most of them: their options.
+// Options of verbs that analyse a mechanism, most of them without a run.
 
 #include "verbs.h"
 

@@ -1,4 +1,4 @@
-// Verbs that integrate: their options.
+// Options of verbs that integrate.
 
 #include "verbs.h"
 

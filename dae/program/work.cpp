@@ -42,7 +42,7 @@ int work(const Options& o, const WorkOptions& w) {
   const RunDefaults& defaults = mechanism->scene().run;
   WorkRequest request;
   request.forms = names_in(w.forms);
-  for (const auto& form : request.forms) is_dae_form(form);  // unknown names before anything runs
+  for (const auto& form : request.forms) is_dae_form(form);  // refuses unknown names before any run
   request.integrators = names_in(w.integrators);
   for (const auto& name : request.integrators) integrator(name);
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();

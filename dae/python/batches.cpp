@@ -1,5 +1,5 @@
-// Many states of a mechanism at one time, side by side in vector registers where the sweeps carry
-// the loops: ClosedChain::rates_of_states, accelerations_of_states.
+// Many states of a mechanism at one time, side by side in vector registers where sweeps carry the
+// loops: ClosedChain::rates_of_states, accelerations_of_states.
 
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace {
 
 using States = Eigen::Ref<const StateMatrix>;
 
-/// Runs `evaluate` without the interpreter. Raises SceneError where a state has no result.
+/// Runs `evaluate` without the interpreter's lock. Raises SceneError where a state has no result.
 template <class Evaluate>
 void without_interpreter(ClosedChain& chain, Evaluate&& evaluate) {
   bool ok = false;

@@ -1,6 +1,6 @@
 #pragma once
-// What the files of the Python module share. A mechanism is shared by what is made of it; vectors
-// go in and out without copies, as NumPy arrays of float64.
+// Shared by the files of the Python module. Python objects share their mechanism; vectors go in and
+// out without copies, as NumPy arrays of float64.
 
 #include <momenta/core/arguments.h>
 #include <momenta/core/open_chain.h>
@@ -21,7 +21,7 @@ namespace py = pybind11;
 using Vector = Eigen::VectorXd;
 using In = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Refuses an array of the wrong length or with numbers that are none, by its name.
+/// Refuses an array of wrong length or with numbers that are not finite, by its name.
 inline void expect_size(const In& x, int size, const char* name, const char* what) {
   if (x.size() != size)
     throw py::value_error(std::string(name) + " has " + std::to_string(x.size()) +
@@ -35,7 +35,7 @@ inline void expect_time(double t) {
                           ", expected a time in seconds");
 }
 
-/// Kernel, solver of (7) and cuts of runs by name. @throws py::value_error
+/// Kernel, solver of (7) and cuts of runs, by name. @throws py::value_error
 MechanismOptions options_of(const std::string& algebra, const std::string& kkt,
                             const std::string& cut);
 
@@ -52,7 +52,7 @@ class Bench {
         e(mechanism->evaluation<double>()) {
     if (mechanism->m() > 0) solver = make_loop_solver(*mechanism, *e);
   }
-  /// The tree, its loops open: M is the tree's.
+  /// The open tree: M is the tree's.
   OpenChain& chain() {
     if (!chain_) {
       Scene tree = mechanism->scene();
@@ -61,7 +61,7 @@ class Bench {
     }
     return *chain_;
   }
-  /// The mechanism as ClosedChain evaluates it: with joint forces, and many states at once.
+  /// The mechanism in ClosedChain: with joint forces, and many states at once.
   ClosedChain& closed() {
     if (!closed_)
       closed_ = std::make_unique<ClosedChain>(mechanism->scene(), options_of(algebra, kkt, cut));
@@ -72,7 +72,7 @@ class Bench {
     if (q) expect_size(*q, mechanism->nq(), "q", "nq");
     if (u) expect_size(*u, mechanism->nv(), rates, "nv");
   }
-  /// What was found, unless a number of it is none. Raises SceneError.
+  /// Raises SceneError unless all numbers found are finite.
   template <class... Found>
   void expect_finite(const Found&... found) const {
     std::string failure;
@@ -83,9 +83,9 @@ class Bench {
                                            t, q.data()));
   }
 
-  std::string algebra, kkt, cut;  ///< as asked for
-  std::string text;               ///< TOML it was read from; empty: see toml_of()
-  std::string source;  ///< TOML it was read from with the numbers of `set` in place; empty: `text`
+  std::string algebra, kkt, cut;
+  std::string text;    ///< TOML of the scene; empty: see toml_of()
+  std::string source;  ///< TOML with the numbers of `set` in place; empty: `text`
   std::vector<Setting> set;
   std::shared_ptr<const Mechanism> mechanism;
   std::unique_ptr<Evaluation<double>> e;
@@ -99,28 +99,19 @@ using BenchPtr = std::shared_ptr<Bench>;
 
 void bind_mechanism(py::module_& module);
 void bind_runs(py::module_& module);
-/// What stands behind the package's functions that are named like the program's verbs.
+/// Binds functions of the package that are named like the program's verbs.
 void bind_verbs(py::module_& module);
-/// The scene as TOML: its own text, so that what it leaves out may be varied, else one that reads
-/// back the same.
+/// TOML of the scene: its own text, whose omissions a caller may vary, else one that reads back the
+/// same.
 std::string toml_of(const Bench& bench);
-/// Methods of Mechanism that run it.
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
-/// The one that finds its assemblies.
 void add_assemblies(py::class_<Bench, BenchPtr>& mechanism);
-/// The one that moves it through its poses.
 void add_move(py::class_<Bench, BenchPtr>& mechanism);
-/// batches.cpp
 void add_batches(py::class_<Bench, BenchPtr>& mechanism);
-/// efforts.cpp
 void add_effort(py::class_<Bench, BenchPtr>& mechanism);
-/// fits.cpp
 void add_fit(py::class_<Bench, BenchPtr>& mechanism);
-/// gradients.cpp
 void add_gradient(py::class_<Bench, BenchPtr>& mechanism);
-/// The one that finds its modes.
 void add_modes(py::class_<Bench, BenchPtr>& mechanism);
-/// The one that makes linear models of it.
 void add_linearise(py::class_<Bench, BenchPtr>& mechanism);
 
 }  // namespace momenta::python

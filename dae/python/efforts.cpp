@@ -1,4 +1,4 @@
-// Efforts along a motion that is given.
+// Efforts along a given motion.
 
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/effort/effort.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Arrays by the name of their column, with its unit or without, as a table.
+/// A table of arrays, named by column with or without unit.
 Reference table_of(const Mechanism& mechanism, const py::dict& motion) {
   std::vector<Column> known = mechanism.coordinate_columns();
   for (const Column& rate : mechanism.rate_columns()) known.push_back(rate);

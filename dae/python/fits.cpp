@@ -1,5 +1,5 @@
-// Parameters for which a mechanism does what is wanted or was measured, or a functional of its
-// motion is least.
+// Parameters that fit a mechanism to a goal or to measurements, or make a functional of its motion
+// least.
 
 #include <momenta/dae/fit/identification.h>
 #include <momenta/dae/fit/least.h>

@@ -141,7 +141,7 @@ py::tuple energies(Bench& b, double t, const In& q, const In& u) {
   return py::make_tuple(found[0], found[1]);
 }
 
-/// Values left out are those of the start of the scene, assembled where there are loops, as in the
+/// Missing values are those of the scene's start, assembled where there are loops, as in the
 /// program.
 py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
                   const std::optional<Vector>& v, const std::optional<Vector>& p) {

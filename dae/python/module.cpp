@@ -4,11 +4,11 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/study/environment.h>
 
-// The compiled part of the package momenta; the package itself says what is public.
+// The compiled part of the package momenta; the package decides what is public.
 PYBIND11_MODULE(_momenta, module) {
   using namespace momenta::python;
   module.doc() = "The compiled part of momenta.";
-  // Signatures, messages and pickles name the package, where users find what is defined here.
+  // Signatures, messages and pickles name the package, where users find its parts.
   module.attr("__module__") = "momenta";
   try {
     py::module_::import("numpy");
@@ -20,7 +20,7 @@ PYBIND11_MODULE(_momenta, module) {
   module.attr("__version__") = momenta::version();
   py::register_exception<momenta::SceneError>(module, "SceneError", PyExc_ValueError)
       .attr("__module__") = "momenta";
-  // Names in messages may contain bytes that are not UTF-8, from which Python makes no string.
+  // Names in messages may contain bytes that are not UTF-8, of which Python makes no string.
   py::register_exception_translator([](std::exception_ptr thrown) {
     const auto raise = [](PyObject* kind, const char* what) {
       PyErr_SetString(kind, momenta::reading::on_one_line(what).c_str());
@@ -37,7 +37,7 @@ PYBIND11_MODULE(_momenta, module) {
       raise(PyExc_ValueError, e.what());
     }
   });
-  bind_runs(module);  // first: names of its classes stand in the signatures of Mechanism
+  bind_runs(module);  // first: signatures of Mechanism name its classes
   bind_mechanism(module);
   bind_verbs(module);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// A long call tells how far it is: to a Python function of (fraction, text), a hundred times at
-// most and at the end. Whatever that raises, and Ctrl-C, stops the call at its next sample.
+// Progress of a long call, told to a Python function of (fraction, text), at most a hundred times
+// and at the end. An exception of the function, and Ctrl-C, stop the call at its next sample.
 
 #include <algorithm>
 
@@ -10,11 +10,11 @@ namespace momenta::python {
 
 class Progress {
  public:
-  /// `told`: what the package's teller() takes.
+  /// `told`: argument of the package's teller().
   explicit Progress(const py::object& told)
       : told_(py::module_::import("momenta.progress").attr("teller")(told)) {}
 
-  /// False once the call should stop. To be called without the interpreter's lock.
+  /// False once the call should stop. @pre the interpreter's lock is released
   bool operator()(double fraction, const std::string& text) {
     const py::gil_scoped_acquire lock;
     return PyErr_Occurred() == nullptr && PyErr_CheckSignals() == 0 && tell(fraction, text);
@@ -24,8 +24,7 @@ class Progress {
                    "[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label);
   }
 
-  /// Calls work() without the interpreter's lock, tells that it is over, and raises what stopped
-  /// it.
+  /// Calls work() without the interpreter's lock, reports its end, and raises what stopped it.
   template <class Work>
   void during(const Work& work) {
     try {
@@ -59,7 +58,7 @@ class Progress {
 
   py::object told_;
   std::string text_;
-  double next_ = 0;  ///< fraction from which on it is told again
+  double next_ = 0;  ///< next fraction to report
 };
 
 }  // namespace momenta::python

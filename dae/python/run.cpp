@@ -1,5 +1,4 @@
-// Results of runs. Their arrays are views of a run's data: they keep the run alive and are not
-// copied.
+// Results of runs. Their arrays are views of a run's data that keep the run alive.
 
 #include "run.h"
 
@@ -33,7 +32,7 @@ RunPtr run_from(const py::tuple& kept) {
   return run;
 }
 
-/// Each event by the names of its columns, units left off.
+/// Events by the names of their columns, without units.
 py::list events(const RunResult& r) {
   const Names& columns = r.trajectory.columns;
   py::list all;

@@ -1,5 +1,5 @@
 #pragma once
-// The result of one run as Python has it.
+// The result of a run in Python.
 
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/run_record.h>
@@ -13,7 +13,7 @@
 
 namespace momenta::python {
 
-/// A result, and its trajectory as one block of rows.
+/// A result, with its trajectory as one block of rows.
 struct Run {
   RunResult result;
   std::vector<double> rows;

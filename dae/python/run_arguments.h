@@ -1,6 +1,6 @@
 #pragma once
-// How a run is asked for, by the names and with the defaults of `momenta run`: the same arguments
-// for one run and for the runs of a sweep.
+// Arguments of a run, with the names and defaults of `momenta run`, for one run and for the runs of
+// a sweep.
 
 #include <momenta/dae/study/run_form.h>
 
@@ -25,7 +25,7 @@ struct RunArguments {
   RunSettings settings(const RunDefaults& defaults) const;
 };
 
-// What is given, or else `otherwise`. @throws py::value_error by its name
+// `given`, or else `otherwise`. @throws py::value_error by its name
 double positive(const char* name, const Given& given, double otherwise, const char* what);
 double not_negative(const char* name, double x, const char* what);
 double seconds(const char* name, const Given& given, double otherwise);
@@ -33,7 +33,7 @@ double tolerance(const char* name, double x);
 double cpu_time(double x);
 int sample_count(const std::optional<int>& given, int otherwise);
 
-/// Calls define(arguments…) with those above; pass them on to pybind11's def.
+/// Calls define(arguments…) with the arguments above; pass them on to pybind11's def.
 template <class Define>
 void with_run_arguments(const Define& define) {
   using namespace py::literals;

@@ -1,5 +1,5 @@
-// Runs and studies. Long calls release the lock of the interpreter, and Ctrl-C stops them at the
-// next sample.
+// Runs and studies. Long calls release the interpreter's lock, and Ctrl-C stops them at the next
+// sample.
 
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/measured_columns.h>

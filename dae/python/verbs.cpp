@@ -1,5 +1,5 @@
-// Reading of scenes, and the verbs evaluate, index, sweep and view of the program, for the
-// functions of the package. States and results are text in the formats of the program.
+// Reading of scenes, and the verbs evaluate, index, sweep and view for the functions of the
+// package. States and results are text in the formats of the program.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -39,7 +39,7 @@ std::vector<Setting> settings_from(const Numbers& set) {
   return settings;
 }
 
-/// `text`: the TOML of the scene, `set` included; empty where it was in another format.
+/// `text`: TOML of the scene, `set` included; empty: another format.
 BenchPtr ready(Scene scene, const std::string& text, const Numbers& set, const std::string& at,
                const std::string& algebra, const std::string& kkt, const std::string& cut) {
   if (!at.empty()) start_at(at, scene);
@@ -86,7 +86,7 @@ class Cases {
         const std::string& kkt, const std::string& cut, const Names& vary, const Names& watch,
         const std::optional<SampleSettings>& sample, double cpu_limit, const RunArguments& asked) {
     const Scene scene = parse_scene(text, file);
-    static_cast<void>(asked.settings(scene.run));  // what is wrong with every case is said once
+    static_cast<void>(asked.settings(scene.run));  // raises an error of all cases once
     request_.text = text;
     request_.file = file;
     request_.mechanism = options_of(algebra, kkt, cut);
@@ -106,7 +106,7 @@ class Cases {
   std::string table() { return sweep_table(request_, cases_, statistics()); }
 
  private:
-  /// Of all cases, once; null without a sample.
+  /// Statistics of all cases, made once; null without a sample.
   const SweepStatistics* statistics() {
     if (!request_.sample) return nullptr;
     if (!statistics_) statistics_ = sweep_statistics(request_, cases_);
@@ -146,7 +146,7 @@ void bind_verbs(py::module_& module) {
       [](const std::string& file, const std::string& loops, bool free_root, const std::string& key,
          const Names& controls, const Stops& stops, const Numbers& set, const std::string& at,
          const std::string& algebra, const std::string& kkt, const std::string& cut) {
-        // With stops, the text of the file is another scene.
+        // With stops, the file has the text of another scene.
         const bool as_written = !stops && is_toml(file);
         return ready(read_scene(file, {loops, free_root, key, controls, stops}, settings_from(set)),
                      as_written ? reading::text_of(file) : "", set, at, algebra, kkt, cut);

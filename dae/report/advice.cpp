@@ -34,7 +34,7 @@ std::string advice(const StudyResult& study) {
   std::string text;
   for (const double target : targets) {
     const std::string wanted = scientific(target, 1);
-    // The cheapest run of every form that reaches the target.
+    // Cheapest run of every form that reaches the target.
     std::vector<std::size_t> best;
     for (std::size_t i = 0; i < study.runs.size(); ++i) {
       const RunResult& run = study.runs[i];

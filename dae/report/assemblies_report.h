@@ -10,10 +10,10 @@
 
 namespace momenta {
 
-/// How many, of how many starts or paths, and what that proves.
+/// Assemblies, of starts or paths: numbers and completeness.
 std::string assemblies_in_words(const Mechanism& mechanism, const AssembliesRequest& request,
                                 const Assemblies& found);
-/// A line each.
+/// One line an assembly.
 std::string assemblies_table(const Mechanism& mechanism, const Assemblies& found);
 /// The same with all digits.
 std::string assemblies_csv(const Mechanism& mechanism, const Assemblies& found);
@@ -21,7 +21,7 @@ nlohmann::ordered_json assemblies_json(const Mechanism& mechanism, const Assembl
                                        const Assemblies& found);
 
 inline constexpr std::size_t most_assemblies_drawn = 60;
-/// Pictures beside each other, the own assembly first, above words and table.
+/// Pictures, the own assembly first, above words and table.
 std::string assemblies_page(const Mechanism& mechanism, const AssembliesRequest& request,
                             const Assemblies& found, const Environment& environment,
                             const std::string& command);

@@ -12,8 +12,7 @@
 namespace momenta {
 namespace {
 
-// The new directory entry survives a crash only once the directory itself is on disk; where that
-// cannot be asked for, the file is whole nevertheless.
+// Only then does a new entry survive a crash. Without it the file is still whole.
 void sync_directory(const std::filesystem::path& directory) {
   const int handle = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (handle < 0) return;
@@ -45,7 +44,7 @@ std::optional<std::string> put_in_place(const std::filesystem::path& temporary,
                                         const std::filesystem::path& path) {
   const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
   int error = file < 0 ? errno : 0;
-  // EINVAL: the file system knows no fsync for this file; the rename is atomic all the same.
+  // EINVAL: no fsync on this file system; the rename is still atomic.
   if (error == 0 && ::fsync(file) != 0 && errno != EINVAL) error = errno;
   if (file >= 0 && ::close(file) != 0 && error == 0) error = errno;
   if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;

@@ -14,18 +14,16 @@ struct ResultFile {
   std::string content;
 };
 
-/// Writes each by way of its PartFile, and gives them their names once all are on the disk; missing
-/// directories are made. Nothing on success, else one sentence with a path and the system's word
-/// for the cause: then files that stood there before are unchanged (but for a rename that fails
-/// after others, say where a directory has the name), and no temporary is left.
+/// Writes each file as a PartFile, and gives them their names once all are on the disk; makes
+/// missing directories. Returns nothing, or one sentence with a path and the system's message: then
+/// files that were there are unchanged (unless a rename fails after others, as where a directory
+/// has the name), and no temporary is left.
 [[nodiscard]] std::optional<std::string> atomic_write(const std::vector<ResultFile>& files);
 
-/// One file.
 [[nodiscard]] std::optional<std::string> atomic_write(const std::filesystem::path& path,
                                                       std::string_view content);
 
-/// The second half of it: a temporary file that is written reaches the disk and gets its name. On
-/// failure it is removed.
+/// Syncs a written file and gives it its name. On failure it is removed.
 [[nodiscard]] std::optional<std::string> put_in_place(const std::filesystem::path& temporary,
                                                       const std::filesystem::path& path);
 

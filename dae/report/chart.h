@@ -1,5 +1,5 @@
 #pragma once
-// A chart as data: what a page draws and what a figure for a paper is made of.
+// A chart as data, for pages and for figures of papers.
 
 #include <momenta/dae/report/sign.h>
 
@@ -10,21 +10,21 @@ namespace momenta {
 
 struct Curve {
   std::string name;
-  std::vector<double> x, y;  ///< NaN: nothing there
+  std::vector<double> x, y;  ///< NaN: a gap
   Sign sign;
-  bool failed = false;  ///< a cross where it ends
-  bool dots = false;    ///< a marker at each point
+  bool failed = false;  ///< a cross at the end
+  bool dots = false;    ///< markers at all points
 };
 
 struct Chart {
-  std::string key;                      ///< of its file
+  std::string key;                      ///< file name
   std::string title, x_title, y_title;  ///< axes with their units
-  std::string unit;                     ///< of y
+  std::string unit;                     ///< y's unit
   bool log_x = false, log_y = false;
-  /// Of curves that go up and down on a logarithmic axis: strong the largest value so far, faint
-  /// the value itself.
+  /// For curves that go up and down on a logarithmic axis: the largest value so far is strong, the
+  /// value itself faint.
   bool running_maximum = false;
-  std::vector<double> slopes;  ///< of thin lines of reference
+  std::vector<double> slopes;  ///< thin reference lines
   std::vector<Curve> curves;
 };
 
@@ -35,15 +35,14 @@ struct History {
   std::vector<double> Series::*values;
   std::vector<double> slopes;
 };
-/// With the unit that the drifts of this run have.
+/// Histories with the run's unit of drift.
 std::vector<History> histories(const RunResult& run);
 
-/// Of one run over time: what is logarithmic (drifts, energy error, error), then a chart for each
-/// unit of its trajectory. Empty charts are left out.
+/// Logarithmic charts (drifts, energy error, error), then one for each unit of the trajectory. None
+/// is empty.
 std::vector<Chart> charts_of_run(const RunResult&);
 
-/// Histories of the runs that have curves; then error against processor time and, of a ladder, its
-/// further axes.
+/// Histories of runs with curves; error against processor time; a ladder's further axes.
 std::vector<Chart> charts_of_study(const StudyResult&);
 
 }  // namespace momenta

@@ -9,7 +9,7 @@
 namespace momenta {
 namespace {
 
-/// "10⁻³", between the powers "2·10⁻³".
+/// "10⁻³", or "2·10⁻³" between powers.
 std::string power_text(double value) {
   const double exponent = std::floor(std::log10(value) + 1e-9);
   const auto mantissa = std::lround(value / std::pow(10.0, exponent));

@@ -25,7 +25,6 @@ std::string dash_of(const std::vector<double>& dash) {
   return text;
 }
 
-/// What is drawn of a curve.
 struct Drawn {
   const Curve* curve;
   std::vector<double> x, y, top;
@@ -67,7 +66,7 @@ class ChartDrawing {
       }
       drawn_.push_back(std::move(d));
     }
-    // Of the faint lines what reaches two decades below the strong ones.
+    // Faint lines reach two decades below the strong ones.
     if (chart.running_maximum && !y.empty()) y.take(std::max(faint.low, y.low / 100));
     height_ = std::max(least_plot_height, label_gap * (1 + static_cast<double>(drawn_.size())));
     const bool dots = std::any_of(chart.curves.begin(), chart.curves.end(),
@@ -120,7 +119,7 @@ class ChartDrawing {
            words;
   }
 
-  /// Through a place three times above the largest curve's end; the others start where it does.
+  /// Reference lines from a place three times above the largest curve's end; others start there.
   std::string reference_lines() const {
     if (chart_.slopes.empty() || drawn_.empty()) return "";
     const Drawn& largest = *std::max_element(
@@ -188,7 +187,6 @@ class ChartDrawing {
     return markup;
   }
 
-  /// Whether curves differ by markers.
   bool markers() const {
     return std::any_of(drawn_.begin(), drawn_.end(),
                        [](const Drawn& d) { return d.curve->sign.marker != "circle"; });
@@ -208,7 +206,7 @@ class ChartDrawing {
     return markup;
   }
 
-  /// Right of the plot, as near to the curves' ends as they find room.
+  /// Right of the plot, as near to the curves' ends as there is room.
   std::string names() const {
     std::vector<const Drawn*> order;
     for (const Drawn& d : drawn_) order.push_back(&d);

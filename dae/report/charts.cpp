@@ -9,7 +9,7 @@
 namespace momenta {
 namespace {
 
-constexpr double rounding_floor = 1e-17;  // of logarithmic axes: below it nothing but rounding
+constexpr double rounding_floor = 1e-17;  // lower end of logarithmic axes: rounding
 
 bool any_finite(const std::vector<double>& y) {
   return std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
@@ -33,7 +33,7 @@ Chart over_time(const std::string& key, const std::string& title, const std::str
   return chart;
 }
 
-/// What a column of a trajectory is called beyond its name, by unit.
+/// Names of a trajectory's columns, by unit.
 struct Quantity {
   const char *unit, *key, *title, *axis;
 };
@@ -45,7 +45,7 @@ constexpr std::array<Quantity, 7> quantities{{{"rad", "angles", "Angles", "angle
                                               {"N", "forces", "Loop forces λ", "force"},
                                               {"N m", "moments", "Loop moments λ", "moment"}}};
 
-/// What a curve's name has to say of loop forces that are not unique.
+/// Remark on a curve of loop forces that are not unique.
 std::string remark(const RunResult& run, const std::string& column) {
   for (const RunResult::Undetermined& u : run.undetermined)
     if (u.column == column)
@@ -147,7 +147,7 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
   for (const History& history : histories(run)) {
     const std::vector<double>& y = run.series.*history.values;
     const std::string key = history.key;
-    // Zero throughout is nothing to look at: drifts without loops.
+    // No curves of zeros, such as drifts without loops.
     if (!any_but_zero(y) || (key == "impulse" && !takes_gauge(run.settings.form))) continue;
     Chart chart = over_time(history.key, history.title, history.axis, history.unit);
     chart.log_y = true;
@@ -197,7 +197,7 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
       [&](std::size_t c) { return trajectory.columns[c].find(".qw [") != std::string::npos; });
   for (const Quantity& q : quantities)
     if (quaternions || q.unit != std::string_view("1")) add(q.key, q.title, q.axis, q.unit);
-  std::vector<std::string> others;  // of a Lagrangian, in units of its own
+  std::vector<std::string> others;  // units of a Lagrangian's own
   for (const auto& [unit, columns] : by_unit) others.push_back(unit);
   for (const std::string& unit : others)
     add("coordinates_" + std::to_string(charts.size()), "In " + unit, "value", unit);
@@ -206,7 +206,7 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
 
 namespace {
 
-/// One figure of a run against what it cost.
+/// A measure against its cost.
 struct Cost {
   const char *key, *title, *x_title;
   std::string y_title, unit;
@@ -229,7 +229,7 @@ double energy_error(const RunResult& run) {
   return run.energy_error_max;
 }
 
-/// The rungs of a ladder are joined; the runs of a drift study stand alone.
+/// Joins the rungs of a ladder; runs of a drift study stand alone.
 Chart scatter(const StudyResult& study, const Cost& cost, const std::vector<Sign>& signs) {
   Chart chart;
   chart.key = cost.key;

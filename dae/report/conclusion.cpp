@@ -18,8 +18,8 @@ struct Named {
   bool by_angles = false;
 };
 
-// What runs are compared by is the drift of lengths, where there are any. Where these stay at
-// rounding level in all runs, and angles beside them do not, it is that of the angles.
+// Runs are compared by their drift of lengths, or of angles if lengths are at rounding level in all
+// runs and angles are not.
 double judged(const Named& n) {
   return n.by_angles ? n.run->angle_drift_max : n.run->position_drift_max;
 }
@@ -29,12 +29,12 @@ std::string unit_of(const Named& n) {
 std::string amount(const Named& n, double value) {
   return unit_of(n) == "m" ? length_text(value) : compact(value, 2) + " rad";
 }
-// With the angles beside it.
+// Drift, with angles beside lengths.
 std::string amount(const Named& n) {
   const bool both = !n.by_angles && !std::isnan(n.run->angle_drift_max);
   return amount(n, judged(n)) + (both ? " and " + compact(n.run->angle_drift_max, 2) + " rad" : "");
 }
-// Of a drift at this level there is nothing to compare.
+// Drifts at this level are not compared.
 bool is_rounding(const Named& n) {
   return judged(n) < (n.by_angles ? n.run->angle_rounding : n.run->drift_rounding);
 }
@@ -61,14 +61,13 @@ std::string seconds(double t) {
   return compact(t, 4) + " s";
 }
 
-// A reason is written as a sentence; inside one of ours its full stop goes.
+// A reason within a sentence, without its full stop.
 std::string clause(std::string reason) {
   while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
   return reason;
 }
 
-// The largest drift is what the loops have opened by only when they still are about that far open
-// at the end.
+// The largest drift is the gap of loops only if it is there at the end.
 bool largest_at_the_end(const Named& n) {
   const auto& all = n.by_angles ? n.run->series.angle_drift : n.run->series.position_drift;
   return all.empty() || !(std::abs(all.back()) < 0.9 * judged(n));
@@ -81,8 +80,7 @@ std::string growth_clause(const Named& n) {
     return ", not as a power of t (slopes " + compact(g.exponent - g.half_range, 2) + " to " +
            compact(g.exponent + g.half_range, 2) + ")";
   }
-  // 0.05: the half range of a flat noisy maximum; "growing like t^0.02" would be a claim about
-  // noise.
+  // 0.05: half range of a flat noisy maximum; smaller exponents are noise.
   if (std::abs(g.exponent) < 0.05) return ", without growing further";
   return ", growing like t^" + fixed(g.exponent, 2);
 }
@@ -100,7 +98,7 @@ std::string drift_clause(const Named& n) {
   return start + (largest_at_the_end(n) ? " is " : " reached ") + amount(n) + growth_clause(n);
 }
 
-// "`b` 3.5 µm, like t^1.01", in the tail of a sentence that began with drift_clause().
+// "`b` 3.5 µm, like t^1.01", after drift_clause() in a sentence.
 std::string tail(const Named& n, bool growth_was_said) {
   std::string growth = growth_clause(n);
   const std::string said = ", growing like ";
@@ -109,7 +107,7 @@ std::string tail(const Named& n, bool growth_was_said) {
   return n.name + ' ' + (is_rounding(n) ? "stays at " : "") + drift_text(n) + growth;
 }
 
-// Two decimals near one, two digits away from it.
+// Two decimals near one, else two digits.
 std::string ratio_text(double ratio) {
   return ratio >= 0.1 && ratio < 10 ? fixed(ratio, 2) : compact(ratio, 2);
 }
@@ -132,9 +130,8 @@ struct Pair {
   Named acceleration, momentum;
 };
 
-// The pair that the first sentence compares: plain forms (no projection) by one method; a momentum
-// run with its gauge before one without. In a ladder: the tightest tolerance at which both
-// finished.
+// For the first sentence: plain forms (no projection) by one method, a momentum run with its gauge
+// first; of a ladder, the tightest tolerance at which both finished.
 std::optional<Pair> compared_pair(const std::vector<Named>& runs) {
   std::optional<Pair> best;
   const auto better = [](const Pair& a, const Pair& b) {
@@ -199,7 +196,7 @@ std::string time_clause(const RunResult& run) {
   return std::isnan(run.cpu_s) ? "" : " in " + time_text(run.cpu_s) + " of processor time";
 }
 
-// " with dop853", unless the name says so already.
+// " with dop853", unless the name has it.
 std::string with_integrator(const Named& n) {
   const std::string& integrator = n.run->settings.integrator;
   return n.name.find(", " + integrator) == std::string::npos ? " with " + integrator : "";
@@ -220,8 +217,7 @@ std::string best_sentence(const std::vector<Named>& done) {
                                    with_integrator(*best) + ": error ") +
            scientific(best->run->position_error_max, 2) + time_clause(*best->run) + ".";
   }
-  // No reference: drift in m and energy in J have no common unit, so their product is what is
-  // compared.
+  // Without a reference drift [m] times energy error [J] is compared.
   const auto both = best_by([](const Named& n) {
     if (std::isnan(judged(n)) && std::isnan(n.run->energy_error_max)) return not_measured;
     return score(judged(n), 1e-16) + score(n.run->energy_error_max, 1e-16);
@@ -251,7 +247,7 @@ std::string failed_clause(const Named& n) {
 }
 
 std::string failed_sentence(const std::vector<Named>& failed, std::size_t total) {
-  constexpr std::size_t named = 3;  // more make the answer a list; the tables hold them all
+  constexpr std::size_t named = 3;  // more are a list: the tables have all
   std::string text;
   if (total == 1) {
     text = "The run did not finish: ";

@@ -13,10 +13,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a quantity of an actuator does along the motion.
+/// Range along the motion.
 struct Extent {
   double least = std::numeric_limits<double>::infinity(), most = -least;
-  double at_most = 0;  ///< when it is largest in size [s]
+  double at_most = 0;  ///< time of the largest |value| [s]
   double largest = 0, square = 0;
   int count = 0;
 

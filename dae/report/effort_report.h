@@ -10,23 +10,22 @@
 
 namespace momenta {
 
-/// "2 actuators hold the motion of 3 coordinates: …": what there is to know first.
+/// Summary: "2 actuators hold the motion of 3 coordinates: …".
 std::string effort_in_words(const EffortResult& result);
 
-/// What each actuator does, as a table, with those words above it.
+/// Summary, and a table of actuators.
 std::string effort_table(const EffortResult& result);
 
 /// A line a time: t, coordinates, rates, accelerations, efforts, powers, thrusts of helical joints,
-/// the sum of powers. Its coordinates, rates and accelerations are a motion that can be read again.
+/// the sum of powers: also a motion to read.
 std::string effort_csv(const EffortResult& result);
 
 nlohmann::ordered_json effort_json(const EffortResult& result);
 
-/// The motion at equal times, at most so many intervals.
+/// Poses at equal times, at most `intervals`.
 Film effort_film(const EffortResult& result, int intervals);
 
-/// Efforts, powers and coordinates over time, one chart for each unit, as pages have them
-/// (dae/report/page/timeline.js).
+/// Efforts, powers and coordinates over time, one chart a unit (dae/report/page/timeline.js).
 nlohmann::ordered_json effort_charts(const EffortResult& result);
 
 }  // namespace momenta

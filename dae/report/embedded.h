@@ -1,5 +1,5 @@
 #pragma once
-// Files built into the library by embed.cmake: the parts of a page.
+// Parts of a page, built into the library by embed.cmake.
 
 #include <string_view>
 

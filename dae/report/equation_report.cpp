@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 using structure::at;
 
-/// "(1) - 2·(3)'": a combination, its small parts left out.
+/// "(1) - 2·(3)'": a combination without its small parts.
 std::string combination_of(const Eigen::VectorXd& parts, const structure::Offsets& offsets) {
   std::string text;
   for (Eigen::Index i = 0; i < parts.size(); ++i) {
@@ -30,7 +30,7 @@ std::string combination_of(const Eigen::VectorXd& parts, const structure::Offset
   return text;
 }
 
-/// Where the two indices differ, why.
+/// Why the two indices differ.
 std::string verdict(const EquationStart& start) {
   const int n = static_cast<int>(start.offsets.equation.size());
   const int index = start.point.found.index, structural = start.offsets.index;

@@ -1,8 +1,8 @@
 #pragma once
-// The eye of figures, as that of the pages (page/camera.js):
+// Projection of figures, as on pages (page/camera.js):
 //
-//   in the plane  x = s e₁·r, y = −s e₂·r;   in space  x = f a·d/(c·d), y = −f b·d/(c·d),  d = r −
-//   eye
+//   in the plane  x = s e₁·r, y = −s e₂·r
+//   in space      x = f a·d/(c·d), y = −f b·d/(c·d),  d = r − eye
 
 #include <momenta/dae/study/picture.h>
 
@@ -19,10 +19,10 @@ struct Projected {
   double depth, scale;  ///< scale: pixels per metre there
 };
 
-/// The eye of the pages: a camera in front of the plane, or one in space that sees everything.
+/// A camera in front of the plane, or one in space that sees everything.
 class FigureEye {
  public:
-  /// @pre `points`: what has to be within the figure, ground axes
+  /// @pre `points` fit within the figure, ground axes
   FigureEye(const Picture& picture, const std::vector<Eigen::Vector3d>& points)
       : planar_(picture.planar) {
     constexpr double margin = 48;
@@ -68,11 +68,10 @@ class FigureEye {
     return {Eigen::Vector2d(figure_width / 2 + d.x() * scale, height_ / 2 - d.y() * scale),
             planar_ ? -d.z() : d.z(), scale};
   }
-  /// Whether a face is seen from outside.
   bool sees(const Eigen::Vector3d& corner, const Eigen::Vector3d& outward) const {
     return (planar_ ? axes_.col(2) : Eigen::Vector3d(eye_ - corner)).dot(outward) > 0;
   }
-  /// From 0 to 1 by how a face lies to a light from above on the left.
+  /// Brightness from 0 to 1, in light from above on the left.
   double light(const Eigen::Vector3d& outward) const {
     const Eigen::Vector3d towards = planar_ ? axes_.col(2) : Eigen::Vector3d(-axes_.col(2));
     const Eigen::Vector3d from =

@@ -1,5 +1,5 @@
 #pragma once
-// Names in a figure that give way to each other.
+// Names in a figure that do not overlap.
 
 #include <Eigen/Core>
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace momenta {
 
-/// Names, each in the nearest of a few places where it crosses no sign and no other name; one that
-/// finds none is left out.
+/// Each name stands in the nearest of a few places where it crosses no sign or other name, or is
+/// left out.
 class FigureNames {
  public:
-  /// Of a figure of this size [pixels].
+  /// Size of the figure [pixels].
   FigureNames(double width, double height) : width_(width), height_(height) {}
-  /// A name of the sign at a place.
+  /// Adds a name for the sign at a place.
   void add(const Eigen::Vector2d& at, const std::string& text);
-  /// All of them as SVG. O(names²)
+  /// O(names²)
   std::string markup();
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// A scene's parts under other names, its own with a word in front.
+/// Copies a scene's parts with a word in front of their names.
 class Renamed {
  public:
   explicit Renamed(std::string with) : with_(std::move(with)) {}
@@ -42,7 +42,7 @@ class Renamed {
       to.markers.push_back(std::move(marker));
     }
     for (VisualSpec visual : from.visuals) {
-      if (visual.body == "ground") continue;  // stands there already
+      if (visual.body == "ground") continue;  // already there
       visual.body = of(visual.body);
       to.visuals.push_back(std::move(visual));
     }
@@ -56,7 +56,7 @@ class Renamed {
   std::string with_;
 };
 
-/// Balls in the ground where markers are wanted; what is not asked of them is where they come.
+/// Balls in the ground at wanted places of markers; other components are those reached.
 void add_wanted(const ParametricMechanism& family, const FitResult& r, Scene& scene) {
   std::map<int, std::array<Eigen::Index, 3>> markers;  // columns of their components
   for (std::size_t k = 0; k < r.wanted.quantities.size(); ++k) {
@@ -103,13 +103,13 @@ void add_wanted(const ParametricMechanism& family, const FitResult& r, Scene& sc
   }
 }
 
-/// Places that both reach, and their poses; those of the one before are empty where there is none.
+/// Places that both reach, and their poses; `q_before` is empty without any.
 void common_places(SweptPoses& after, SweptPoses* before, int frames, std::vector<double>& places,
                    std::vector<VectorXd>& q, std::vector<VectorXd>& q_before) {
   const double by = after.is_angle() ? 2 * std::numbers::pi / frames : 0.02 * after.unit();
   after.sample(by, frames, places, q);
   if (!before) return;
-  // The other may start elsewhere: twice as far to each side.
+  // `before` may start elsewhere: twice as far to each side.
   std::vector<double> reached;
   std::vector<VectorXd> ignored;
   before->sample(by, 2 * frames, reached, ignored);
@@ -126,8 +126,8 @@ void common_places(SweptPoses& after, SweptPoses* before, int frames, std::vecto
   q = std::move(poses);
 }
 
-/// The mechanism, and the one before where it has poses, in one picture. Frames from `first` on,
-/// `every` apart.
+/// Both mechanisms in one picture, the fitted one alone where `q_before` is empty. Frames from
+/// `first` on, `every` apart.
 FitPicture overlaid(Scene scene, const Mechanism& after, const std::vector<VectorXd>& q,
                     const Mechanism* before, const std::vector<VectorXd>& q_before, double first,
                     double every) {
@@ -154,13 +154,13 @@ FitPicture overlaid(Scene scene, const Mechanism& after, const std::vector<Vecto
   return picture;
 }
 
-/// Whether its parts keep their meaning under other names.
+/// Whether parts keep their meaning under other names.
 bool can_be_renamed(const Scene& scene) {
   return !scene.lagrangian && std::none_of(scene.loops.begin(), scene.loops.end(),
                                            [](const LoopSpec& loop) { return has_equation(loop); });
 }
 
-/// The run of a scene and its poses at equal times; none where it fails on its way.
+/// Poses at equal times; none where the run fails.
 std::unique_ptr<Mechanism> run_of(Scene scene, const RunSettings& settings, int frames,
                                   std::vector<VectorXd>& q) {
   auto mechanism = std::make_unique<Mechanism>(std::move(scene), MechanismOptions{});

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "12 mm and 0.02 rad": the largest errors.
+/// "12 mm and 0.02 rad".
 std::string largest(const WantedErrors& e) {
   std::string text;
   if (!std::isnan(e.length_most)) text = length_text(e.length_most);

@@ -12,10 +12,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Differences that agree to so many digits are told by no sentence.
+/// Differences that agree to so many digits are not mentioned.
 constexpr double enough_digits = 8;
 
-/// θ dJ/dθ over J: by how many times the relative change of θ J changes.
+/// θ dJ/dθ over J: relative change of J by that of θ.
 double relative(const GradientResult& r, Eigen::Index j) {
   return r.variables[static_cast<std::size_t>(j)].value * r.gradient[j] / r.value;
 }

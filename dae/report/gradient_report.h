@@ -9,13 +9,13 @@
 
 namespace momenta {
 
-/// "P.y at t = 1 s is -0.83; by momentum, rk4 …": what there is to know first.
+/// Summary: "P.y at t = 1 s is -0.83; by momentum, rk4 …".
 std::string gradient_in_words(const GradientResult& result);
 
-/// A row a variable: its value, dJ/dθ, and θ dJ/dθ over J, with those words above it.
+/// Summary, and a row a variable: value, dJ/dθ, and θ dJ/dθ over J.
 std::string gradient_table(const GradientResult& result);
 
-/// A line a time: t, then of each variable the derivatives of coordinates and rates.
+/// A line a time: t, then derivatives of coordinates and rates by each variable.
 std::string gradient_csv(const GradientResult& result);
 
 nlohmann::ordered_json gradient_json(const GradientResult& result);

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Json = nlohmann::ordered_json;
 
-/// "0.0019 rad and 0.02 rad/s": root mean squares over all quantities of a unit.
+/// "0.0019 rad and 0.02 rad/s": root mean squares by unit.
 std::string rms_in_words(const Identification& r, const MatrixXd& values) {
   std::map<std::string, std::pair<double, Index>> squares;  // by unit
   for (Index k = 0; k < values.cols(); ++k) {

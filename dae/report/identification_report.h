@@ -9,20 +9,19 @@
 
 namespace momenta {
 
-/// "Of 400 numbers measured at 200 times the rms error is 0.0019 rad; …": what there is to know
-/// first.
+/// Summary: "Of 400 numbers measured at 200 times the rms error is 0.0019 rad; …".
 std::string identification_in_words(const Identification& result);
 
-/// Parameters before and after with their standard deviations, with those words above them.
+/// Summary, and parameters before and after with standard deviations.
 std::string identification_table(const Identification& result);
 
-/// A line a time: t, and of each quantity what was measured, what the scene found does, and what
-/// the scene as it is does; empty cells where nothing was measured, or there is no such run.
+/// A line a time: t, and for each quantity the measured, found and given values; empty cells
+/// without a measurement or run.
 std::string identification_csv(const Identification& result);
 
 nlohmann::ordered_json identification_json(const Identification& result);
 
-/// The same over time, one chart a quantity, as pages have them (dae/report/page/timeline.js).
+/// The same over time, one chart a quantity (dae/report/page/timeline.js).
 nlohmann::ordered_json identification_charts(const Identification& result);
 
 }  // namespace momenta

@@ -52,7 +52,7 @@ const FormIndex* find(const IndexStudy& study, const std::string& form) {
   return nullptr;
 }
 
-/// Only what this study's numbers say.
+/// Says only what this study's numbers show.
 std::string lambda_or_sigma(const IndexStudy& study) {
   const FormIndex* with_force = find(study, "momentum-index3");
   const FormIndex* with_impulse = find(study, "momentum-index2");

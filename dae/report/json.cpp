@@ -60,7 +60,7 @@ Json summary_json(const RunResult& run, const Environment& environment) {
     json["singular_crossings"].push_back(
         {{"t", crossing.t}, {"pivot", crossing.pivot}, {"ambiguous", crossing.ambiguous}});
   json["passages"] = json["singular_crossings"];  // deprecated
-  // Null where no trajectory was kept, and nobody looked.
+  // null where no trajectory was kept: not searched
   json["undetermined"] = run.trajectory.columns.empty() ? Json() : Json::array();
   for (const auto& u : run.undetermined)
     json["undetermined"].push_back(

@@ -1,6 +1,5 @@
 #pragma once
-// Results as JSON: summary.json of one run, and the array that a study writes. The keys are public
-// interface.
+// Results as JSON: summary.json of one run, and the array of a study. Keys are public interface.
 
 #include <momenta/dae/study/run_result.h>
 
@@ -10,10 +9,9 @@ namespace momenta {
 
 /// summary.json: scene form integrator gauge rtol atol step end_time status reason stopped_at
 /// project jacobian linear_solver kkt counters{…} time{…} drift{…} energy{…} error{…}
-/// environment{…}. Not measured is null.
+/// environment{…}. Missing measurements are null.
 nlohmann::ordered_json summary_json(const RunResult&, const Environment&);
 
-/// One summary per run, in order.
 nlohmann::ordered_json study_json(const StudyResult&);
 
 /// null unless finite: JSON has no NaN.

@@ -1,6 +1,6 @@
 #pragma once
-// JSON written as it comes, in the order it comes: objects indented, arrays of numbers on one line,
-// matrices one row a line. Tables of many thousand joints cost what their text costs.
+// JSON written directly, in order: objects indented, arrays of numbers on one line, matrices one
+// row a line. Cost is that of the text.
 
 #include <cstddef>
 #include <string>
@@ -18,7 +18,7 @@ class JsonWriter {
   void text(const std::string& key, const std::string& value);
   void texts(const std::string& key, const std::vector<std::string>& values);
   void whole_number(const std::string& key, int value);
-  /// Digits that read back as the same double; null where not finite.
+  /// Digits that read back as the same double; null unless finite.
   void number(const std::string& key, double value);
   template <class Numbers>
   void numbers(const std::string& key, const Numbers& values) {
@@ -38,7 +38,6 @@ class JsonWriter {
     out_ += ']';
   }
 
-  /// Closes the document and hands it over.
   std::string take();
 
  private:
@@ -59,7 +58,7 @@ class JsonWriter {
 
   std::string out_;
   std::size_t depth_ = 1;
-  bool first_ = true;  ///< nothing stands in the open object yet
+  bool first_ = true;  ///< the open object is empty
 };
 
 }  // namespace momenta

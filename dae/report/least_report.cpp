@@ -87,7 +87,7 @@ Json least_json(const LeastResult& r) {
 
 Json least_charts(const LeastResult& r, double first) {
   if (!r.swept) return Json::array();
-  // The film goes half a turn to each side of the start: a turn is told where it shows it.
+  // The film goes half a turn to each side of the start: angles are reported accordingly.
   constexpr double turn = 2 * std::numbers::pi;
   const bool whole = r.swept->unit == "rad" && !r.places.empty() &&
                      std::abs(r.places.back() - r.places.front() - turn) < 1e-9;

@@ -9,20 +9,19 @@
 
 namespace momenta {
 
-/// "max(P.y) is 1.2; as the scene is, 3.4. A minimum, of one start.": what there is to know first.
+/// Summary: "max(P.y) is 1.2; as the scene is, 3.4. A minimum, of one start."
 std::string least_in_words(const LeastResult& result);
 
-/// Parameters before and after as a table, with those words above it and conditions below.
+/// Summary, a table of parameters before and after, and conditions.
 std::string least_table(const LeastResult& result);
 
-/// Of a swept motion, a line a pose: the swept coordinate, and of each formula of single poses what
-/// it is before and after; the first line alone where there are none.
+/// A line a pose of a swept motion: the swept coordinate, and formulas of single poses before and
+/// after; else the header alone.
 std::string least_csv(const LeastResult& result);
 
 nlohmann::ordered_json least_json(const LeastResult& result);
 
-/// Each formula of single poses, before and after, over the way of the swept coordinate from
-/// `first`, as pages have them (dae/report/page/timeline.js).
+/// Formulas of single poses over the swept coordinate from `first` (dae/report/page/timeline.js).
 nlohmann::ordered_json least_charts(const LeastResult& result, double first);
 
 }  // namespace momenta

@@ -34,7 +34,7 @@ std::string how_many(std::size_t n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// A text in quotes, each `quote` in it preceded by `escape`.
+/// A text in quotes; `escape` precedes each `quote` in it.
 std::string in_marks(const std::string& text, char quote, char escape) {
   std::string all(1, quote);
   for (const char c : text) {
@@ -51,7 +51,7 @@ std::string first_line(const LinearModel& m) {
          word_for(m.kind) + ", at t = " + round_trip(m.t) + " s";
 }
 
-/// Numbers of a row, `between` them.
+/// Joined by `between`.
 std::string numbers_of(const MatrixXd& a, Eigen::Index i, const char* between) {
   std::string line;
   for (Eigen::Index j = 0; j < a.cols(); ++j) line += (j == 0 ? "" : between) + round_trip(a(i, j));
@@ -61,7 +61,7 @@ std::string numbers_of(const MatrixXd& a, Eigen::Index i, const char* between) {
 }  // namespace
 
 std::string linear_table(const LinearModel& m) {
-  constexpr double rounding = 1e-6;  // of the largest: a double zero is split by its root
+  constexpr double rounding = 1e-6;  // relative: a double zero is split by its root
   const double largest = m.poles.size() > 0 ? m.poles.cwiseAbs().maxCoeff() : 0;
   const auto growing =
       std::count_if(m.poles.begin(), m.poles.end(),

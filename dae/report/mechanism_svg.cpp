@@ -1,6 +1,5 @@
-// The mechanism as a figure: solids, bars where a body has none, signs of joints and loops, limits
-// where there are few, names.
-// What is far is drawn first.
+// The mechanism as a figure, far parts first: solids, bars for bodies without any, signs of joints
+// and loops, limits where there are few, names.
 
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/figure_eye.h>
@@ -27,7 +26,6 @@ using Eigen::Vector3d;
 constexpr const char *body_colour = "#8fa3bb", *rim = "#3c4653", *gap_colour = "#d55e00",
                      *dark = "#17191d", *limit_colour = "#525a66";
 
-/// A thing to be drawn, the farthest first.
 struct Item {
   double depth;
   std::string markup;
@@ -43,8 +41,7 @@ std::string circle(const Vector2d& at, double r, const char* fill, const char* s
                                  {"stroke-width", svg::number(width)}});
 }
 
-/// A piece of a bar with a rim of the ground, so that nearer ones pass in front; round where the
-/// bar ends.
+/// A piece of a bar, with a rim so that nearer ones pass in front; round at the bar's ends.
 std::string bar(const Projected& a, const Projected& b, double width, bool first, bool last) {
   const Vector2d way = (b.at - a.at).normalized() * 0.7;
   const auto stroke = [&](const char* colour, double w, double over) {
@@ -77,7 +74,7 @@ std::string ground_sign(const Vector2d& at) {
          circle(at, 4, "#ffffff", dark, 2);
 }
 
-/// Corners of a box about the mass centre, body axes; bits of `i` choose the sides.
+/// Corner of a box about the mass centre, body axes; bits of `i` choose the sides.
 Vector3d corner(const Picture::Body& body, int i) {
   const Vector3d half = 0.5 * body.shape.size;
   return body.com + Vector3d((i & 1) != 0 ? half.x() : -half.x(),
@@ -85,7 +82,6 @@ Vector3d corner(const Picture::Body& body, int i) {
                              (i & 4) != 0 ? half.z() : -half.z());
 }
 
-/// Bodies that are drawn by solids of their own.
 std::vector<bool> with_solids(const Picture& picture) {
   std::vector<bool> seen(picture.bodies.size(), false);
   for (const Picture::Solid& solid : picture.solids)
@@ -94,7 +90,7 @@ std::vector<bool> with_solids(const Picture& picture) {
   return seen;
 }
 
-/// Everything that has to be within the picture, ground axes.
+/// Points to be within the picture, ground axes.
 std::vector<Vector3d> extent(const Picture& picture, const std::vector<Isometry3d>& at) {
   std::vector<Vector3d> points;
   const std::vector<bool> solid = with_solids(picture);
@@ -123,7 +119,7 @@ std::vector<Vector3d> extent(const Picture& picture, const std::vector<Isometry3
   }
   for (const Picture::Pair& loop : picture.loops)
     if (loop.parent < 0) points.push_back(loop.at_parent);
-  // The ground's end of a spring, unless it is so far away that the mechanism would be a dot.
+  // The ground's end of a spring, unless so far away that the mechanism would be a dot.
   Vector3d low = Vector3d::Constant(INFINITY), high = -low;
   for (const Vector3d& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double reach = points.empty() ? INFINITY : 0.5 * (high - low).norm();
@@ -135,7 +131,7 @@ std::vector<Vector3d> extent(const Picture& picture, const std::vector<Isometry3
   return points;
 }
 
-/// Median length of links: what widths of lines follow.
+/// Median length of links, for line widths.
 double usual_length(const Picture& picture) {
   std::vector<double> lengths;
   for (const Picture::Body& body : picture.bodies)
@@ -151,7 +147,7 @@ void add_body(std::vector<Item>& items, const Picture::Body& body, const Isometr
               const FigureEye& eye, double width) {
   const auto project = [&](const Vector3d& p) { return eye.project(at * p); };
   const auto add_bar = [&](const Vector3d& a, const Vector3d& b, double metres) {
-    // In pieces, each at its own depth.
+    // Pieces, each at its own depth.
     const int pieces = eye.planar() ? 1 : 8;
     for (int i = 0; i < pieces; ++i) {
       const Projected p = project(a + (b - a) * i / pieces),
@@ -199,7 +195,7 @@ void add_body(std::vector<Item>& items, const Picture::Body& body, const Isometr
   }
 }
 
-/// Limits, in front of everything.
+/// Limits stand in front of everything.
 void add_limits(std::vector<Item>& items, const std::vector<LimitMark>& marks,
                 const FigureEye& eye) {
   constexpr double in_front = -1e8;
@@ -219,7 +215,7 @@ void add_limits(std::vector<Item>& items, const std::vector<LimitMark>& marks,
   }
 }
 
-/// A colour of eight bits each, darker by less light.
+/// Eight bits a channel, darker in less light.
 std::string shaded(const std::optional<Vector3d>& colour, double light) {
   const Vector3d base = colour.value_or(Vector3d(0x8f, 0xa3, 0xbb) / 255);
   char hex[8];
@@ -230,11 +226,11 @@ std::string shaded(const std::optional<Vector3d>& colour, double light) {
   return hex;
 }
 
-/// The faces of a solid that are seen.
+/// Adds a solid's visible faces.
 void add_solid(std::vector<Item>& items, const Picture& picture, const Picture::Solid& solid,
                const Isometry3d& at, const FigureEye& eye) {
   for (const Face& face : faces_of(picture, solid)) {
-    Vector3d outward = Vector3d::Zero();  // of any polygon, degenerate corners too
+    Vector3d outward = Vector3d::Zero();  // normal of any polygon
     for (std::size_t i = 0; i < face.size(); ++i)
       outward += face[i].cross(face[(i + 1) % face.size()]);
     outward = at.linear() * outward.normalized();

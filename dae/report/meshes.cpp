@@ -14,7 +14,7 @@ using reading::Mesh;
 
 constexpr std::size_t bytes_each = 8, most_points = 65536;
 
-/// The mesh with the points of each cell as one.
+/// The points of each cell are merged.
 Mesh clustered(const Mesh& mesh, double cell) {
   struct Cluster {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -39,7 +39,7 @@ Mesh clustered(const Mesh& mesh, double cell) {
   for (const auto& t : mesh.triangles) {
     std::array<std::uint32_t, 3> corners{of[t[0]], of[t[1]], of[t[2]]};
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-    // The least corner first: the same triangle, the same way round.
+    // The least corner first, so that equal triangles compare equal.
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     if (known.insert(corners).second) small.triangles.push_back(corners);
   }
@@ -57,7 +57,7 @@ bool fit(const std::vector<Mesh>& meshes, std::size_t bytes) {
          });
 }
 
-/// To the smallest cells with which they fit; the last that are tried where none do.
+/// Coarsens to the smallest cells that fit; to the last tried if none do.
 void coarsen(std::vector<Mesh>& meshes, double length, std::size_t bytes) {
   if (fit(meshes, bytes)) return;
   const std::vector<Mesh> whole = meshes;

@@ -16,7 +16,7 @@ std::string counted_modes(long n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? " mode" : " modes");
 }
 
-/// Growing modes first, then rigid ones, are left out of "the lowest".
+/// Growing modes, which come first, and rigid ones do not count.
 const Mode* lowest(const ModesResult& r) {
   for (const Mode& mode : r.spectrum.modes)
     if (mode.kind() == Mode::Kind::oscillation && mode.s.real() <= 0) return &mode;

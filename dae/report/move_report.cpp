@@ -20,7 +20,7 @@ const Column& swept(const MoveResult& r) {
   return r.coordinates[r.swept];
 }
 
-/// Least and largest of a rate for the swept coordinate at unit rate.
+/// Range of a rate, at unit rate of the swept coordinate.
 std::pair<double, double> ratios(const MoveResult& r, std::size_t rate) {
   double least = none, most = none;
   for (const MovedPose& pose : r.poses)
@@ -39,7 +39,7 @@ std::string by_swept(const MoveResult& r, const std::string& rate_unit, int orde
   return " [" + unit + "/" + swept(r).unit + (order == 2 ? "^2]" : "]");
 }
 
-/// How far the swept coordinate has travelled to each pose, back and forth.
+/// Way of the swept coordinate to each pose, back and forth.
 std::vector<double> travel_of(const MoveResult& r) {
   std::vector<double> travel;
   for (std::size_t i = 0; i < r.poses.size(); ++i)
@@ -50,11 +50,11 @@ std::vector<double> travel_of(const MoveResult& r) {
 const Column& output(const MoveResult& r) {
   return r.coordinates[static_cast<std::size_t>(r.output)];
 }
-/// "[1/m]" of a force for a unit moment, "[1]" for a unit force.
+/// "[1/m]" for a unit moment, "[1]" for a unit force.
 std::string by_effort(const MoveResult& r) {
   return output(r).unit == "rad" ? " [1/m]" : " [1]";
 }
-/// Effort on the output for a unit effort of the swept coordinate, nothing lost: dq/ds⁻¹.
+/// Effort on the output for unit effort of the swept coordinate, without losses: dq/ds⁻¹.
 double advantage(const MoveResult& r, const MovedPose& pose) {
   return pose.u.size() > 0 ? 1 / pose.u[r.output_rate] : none;
 }
@@ -66,7 +66,7 @@ std::string place_of(const MoveResult& r, const MoveResult::Extreme& at) {
   return swept(r).name + " = " + compact(r.start + at.s, 5) + " " + swept(r).unit;
 }
 
-/// Where it comes to rest, and how well force is passed to the output.
+/// Transmission angle and joint force of the output.
 std::string transmission_in_words(const MoveResult& r) {
   if (r.output < 0) return "";
   const auto degrees = [&](const MoveResult::Extreme& at) {

@@ -10,23 +10,22 @@
 
 namespace momenta {
 
-/// "O.q goes round: 360 poses, back at the start.": what there is to know first.
+/// Summary: "O.q goes round: 360 poses, back at the start."
 std::string move_in_words(const MoveResult& result);
 
-/// What each coordinate does, as a table, with those words above it.
+/// Summary, and a table of coordinates.
 std::string move_table(const MoveResult& result);
 
-/// A line a pose: kind, displacement of the swept coordinate, branch, coordinates, their first and
-/// second derivatives, markers; empty cells where there are no derivatives.
+/// A line a pose: kind, displacement of the swept coordinate, branch, coordinates, first and second
+/// derivatives, markers; empty cells without derivatives.
 std::string move_csv(const MoveResult& result);
 
 nlohmann::ordered_json move_json(const MoveResult& result);
 
-/// The poses at equal travels of the swept coordinate, at most so many intervals.
+/// Poses at equal travels of the swept coordinate, at most `intervals`.
 Film move_film(const MoveResult& result, int intervals);
 
-/// Curves of coordinates over the travel of the swept one, one chart for each unit, as pages have
-/// them (dae/report/page/timeline.js).
+/// Coordinates over the travel of the swept one, one chart a unit (dae/report/page/timeline.js).
 nlohmann::ordered_json move_charts(const MoveResult& result);
 
 }  // namespace momenta

@@ -19,7 +19,7 @@ std::string order_of(const std::vector<double>& steps, const std::vector<double>
   return fixed(found.order, 1) + "±" + fixed(found.half_range, 1);
 }
 
-/// By a member of RunResult.
+/// Order of a member of RunResult.
 std::string order_of(const Rungs& ladder, double RunResult::*error) {
   std::vector<double> steps, errors;
   for (const RunResult* run : ladder) {
@@ -29,7 +29,7 @@ std::string order_of(const Rungs& ladder, double RunResult::*error) {
   return order_of(steps, errors);
 }
 
-/// Rungs whose errors fall like steps^−r have differences to the next rung that do.
+/// If errors fall like steps^−r, so do differences to the next rung.
 std::string order_of_impulses(const Rungs& ladder) {
   const std::string& gauge = ladder.front()->settings.gauge;
   if (gauge.empty() || gauge == "reset" || gauge == "flip") return "-";

@@ -1,5 +1,5 @@
 #pragma once
-// The observed orders of the ladders of a work study, as a table on the terminal.
+// Observed orders of the ladders of a work study, as a table on the terminal.
 
 #include <momenta/dae/study/run_result.h>
 
@@ -7,11 +7,11 @@
 
 namespace momenta {
 
-/// One row per ladder (form, integrator, gauge) with the observed orders (measure/observed_order.h)
+/// One row a ladder (form, integrator, gauge) with the observed orders (measure/observed_order.h)
 /// of the errors of coordinates, of rates, of λ from (3) and of the form's own λ against the
-/// reference, and of σ; each with its half range. Of σ, which no reference has, by what |σ|₂ at the
-/// output times changes from rung to rung; where the gauge resets or flips σ it is "-", as is all
-/// that fewer than three rungs show. A note on the signs of the head stands below.
+/// reference, and of σ; each with its half range. No reference has σ: changes of |σ|₂ at the output
+/// times from rung to rung give its order, "-" where the gauge resets or flips σ. "-" also for
+/// fewer than three rungs. A note below explains the head.
 std::string order_table(const StudyResult&);
 
 }  // namespace momenta

@@ -21,8 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "</script" inside a JSON string would end the island; "<\/" is the same string to every JSON
-// reader. "<!--" would start a state of the HTML reader in which the end tag is not found.
+// "</script" in a JSON string would end the island; "<\/" is the same string in JSON. After "<!--"
+// an HTML parser would not find the end tag.
 std::string island(const Json& data) {
   const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string text;
@@ -44,7 +44,7 @@ bool digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// `name` as code, t^1.98 with its exponent raised, 3.5e-7 as 3.5×10 to the −7; code keeps its text.
+// `name` as code, t^1.98 with raised exponent, 3.5e-7 as 3.5×10 to the −7.
 std::string marked_up(const std::string& sentence) {
   const std::string text = escape_html(sentence);
   std::string html;
@@ -57,7 +57,7 @@ std::string marked_up(const std::string& sentence) {
       const auto from = i + 1;
       auto end = text.find_first_not_of("-0123456789.", from);
       if (end == std::string::npos) end = text.size();
-      while (end > from && text[end - 1] == '.') --end;  // the full stop of the sentence
+      while (end > from && text[end - 1] == '.') --end;  // the sentence's full stop
       html += "<sup>" + text.substr(from, end - from) + "</sup>";
       i = end - 1;
     } else if (!code && text[i] == 'e' && i > 0 && digit(text[i - 1])) {
@@ -78,7 +78,7 @@ std::string marked_up(const std::string& sentence) {
   return html + (code ? "</code>" : "");
 }
 
-// Lines as lines of one paragraph.
+// Lines of one paragraph.
 std::string paragraphs(const std::string& lines) {
   std::string html, line;
   std::istringstream in(lines);
@@ -86,7 +86,7 @@ std::string paragraphs(const std::string& lines) {
   return html;
 }
 
-// The scripts share one scope, in the order in which each uses what stands before it.
+// Scripts share one scope, in order of use.
 std::string script(std::initializer_list<std::string_view> own) {
   std::string text;
   const auto add = [&](std::string_view part) {
@@ -170,7 +170,7 @@ std::string effort_page(const StudyResult& study, const EffortResult& result) {
 
 namespace {
 
-/// A mechanism and, pale, the one before, moving beside charts.
+/// A mechanism and, pale, the one before, beside charts.
 std::string synthesis_page(const StudyResult& study, const std::string& words, Json charts,
                            const char* title = "Synthesis") {
   Json data = page_data(study);

@@ -1,5 +1,5 @@
 #pragma once
-// index.html of a study: one file that opens with the network off.
+// index.html of a study: one file for offline use.
 
 #include <momenta/dae/effort/effort.h>
 #include <momenta/dae/fit/identification.h>
@@ -14,34 +14,33 @@ namespace momenta {
 
 // Script, style and uPlot are inlined; the data are the JSON island `<script
 // type="application/json" id="study">`.
-/// Of a study: the conclusion, the mechanism as each run moved it, charts with their tables, how it
-/// was made.
+/// A study: the conclusion, the mechanism's motion in each run, charts with tables, command and
+/// versions.
 std::string drift_page(const StudyResult&);
 
-/// Of its first run: the mechanism moving beside energy, drift and joint curves, with one time.
+/// The first run: the mechanism moving beside energy, drift and joint curves.
 std::string run_page(const StudyResult&);
 
-/// Of a scene without runs: the mechanism as it is assembled; `words` say what it is.
+/// The assembled mechanism, described by `words`.
 std::string view_page(const StudyResult&, const std::string& words);
 
-/// Of an equilibrium: the mechanism swinging in one mode at a time, and all modes as a table.
+/// The mechanism swinging in one mode at a time, and a table of modes.
 std::string modes_page(const StudyResult&, const ModesResult&);
 
-/// Of a mechanism that is moved: its poses beside curves over the travel of the swept coordinate.
+/// Poses beside curves over the travel of the swept coordinate.
 std::string move_page(const StudyResult&, const MoveResult&);
 
-/// Of efforts along a motion: the mechanism moving beside their curves over time.
+/// The mechanism moving beside curves over time.
 std::string effort_page(const StudyResult&, const EffortResult&);
 
-/// Of a fitted mechanism: it and the one before, moving on top of each other, beside what is
-/// wanted; `first` of FitPicture.
+/// A fitted mechanism and the one before, moving on top of each other, beside wanted values;
+/// `first` of FitPicture.
 std::string fit_page(const StudyResult&, const FitResult&, double first);
 
-/// Of a mechanism whose functional is least: the same, beside the formulas of single poses.
+/// The same, beside formulas of single poses.
 std::string least_page(const StudyResult&, const LeastResult&, double first);
 
-/// Of a mechanism identified: its run and the one before, moving on top of each other, beside what
-/// was measured.
+/// The runs of both, moving on top of each other, beside measurements.
 std::string identification_page(const StudyResult&, const Identification&);
 
 }  // namespace momenta

@@ -135,7 +135,7 @@ namespace {
 
 constexpr std::size_t stretches = 300, most_curves = 24;
 
-/// Least and largest of each stretch of y, in their order; all of y where there are few.
+/// Least and largest of each stretch of y, in their order; all of y where few.
 std::vector<double> extremes_of(const std::vector<double>& y) {
   if (y.size() <= 2 * stretches) return y;
   std::vector<double> kept;

@@ -65,15 +65,14 @@ bool PartFile::begins_with(std::string_view before) const {
 }
 
 bool PartFile::open(std::string_view before) {
-  // A lock, not O_EXCL: it goes with its process, whatever ends that. Where the file system knows
-  // no locks, two at once are the user's to avoid.
+  // A lock, not O_EXCL: it ends with its process. Without locks users have to avoid two writers.
   while (true) {
     descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor_ < 0) return fail(errno);
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       problem_ = "Cannot write " + file_.string() + ": another process is writing it.";
     } else if (!has_its_name()) {
-      ::close(descriptor_);  // another process had it, and has just put it in place
+      ::close(descriptor_);  // another process has just put it in place
       continue;
     } else {
       stood_there_ = !before.empty() && begins_with(before);
@@ -115,7 +114,7 @@ bool PartFile::append(std::string_view text) {
 bool PartFile::reserve(std::size_t bytes) {
   if (!problem_.empty()) return false;
   const int error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
-  // EINVAL, EOPNOTSUPP: the file system can't promise room; there may be some all the same.
+  // EINVAL, EOPNOTSUPP: no reservation, but there may be room.
   return error == 0 || error == EINVAL || error == EOPNOTSUPP || fail(error);
 }
 
@@ -127,7 +126,7 @@ void PartFile::cut(std::size_t size) {
 
 bool PartFile::sync() {
   if (!problem_.empty()) return false;
-  // EINVAL: the file system knows no fsync for this file; the rename is atomic all the same.
+  // EINVAL: no fsync on this file system; the rename is still atomic.
   return ::fsync(descriptor_) == 0 || errno == EINVAL || fail(errno);
 }
 

@@ -37,7 +37,7 @@ Json pairs_of(const std::vector<Picture::Pair>& pairs) {
   return all;
 }
 
-/// Five digits are enough for what only the eye judges: about 100 bytes a solid.
+/// Five digits are enough for the eye: about 100 bytes a solid.
 double five_digits(double x) {
   return std::round(x * 1e5) / 1e5;
 }
@@ -101,7 +101,7 @@ std::int16_t part_of(double x, double whole) {
   const double part = whole > 0 ? std::round(whole_short * x / whole) : 0;
   return static_cast<std::int16_t>(std::clamp(part, -whole_short, whole_short));
 }
-/// Points as three shorts, in parts of `scale` from the middle; corners as three unsigned shorts.
+/// Points as shorts, in parts of `scale` from the middle; corners as unsigned shorts.
 Json meshes_of(const Picture& picture) {
   Json all = Json::array();
   for (const Picture::Triangles& mesh : picture.meshes) {
@@ -141,7 +141,7 @@ Json loads_of(const Picture& picture) {
   return all;
 }
 
-/// In units of 2π/65536; whole turns are left out.
+/// Angle in units of 2π/65536, without whole turns.
 std::int16_t angle_of(double angle) {
   const double units = std::round(angle * 32768 / std::numbers::pi);
   return static_cast<std::int16_t>(units - 65536 * std::floor((units + 32768) / 65536));

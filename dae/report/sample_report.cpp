@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "q05", of 0.05
+/// "q05" for 0.05
 std::string quantile_name(double p) {
   const auto percent = static_cast<int>(std::lround(100 * p));
   return (percent < 10 ? "q0" : "q") + std::to_string(percent);
@@ -62,7 +62,7 @@ std::string with_error(double x, double error) {
   return std::isnan(x) ? "-" : fixed(x, 3) + " ± " + fixed(error, 3);
 }
 
-/// Empty without indices.
+/// Rows of indices; empty without any.
 std::vector<std::vector<std::string>> index_rows(const SweepRequest& request,
                                                  const SweepStatistics& all) {
   std::vector<std::vector<std::string>> rows;
@@ -148,7 +148,7 @@ std::string statistics_csv(const SweepRequest& request, const SweepStatistics& a
 
 std::string curves_csv(const SweepStatistics& all) {
   std::vector<std::string> cells{"t [s]"};
-  // Curves have the times of the first case that is done, all of them.
+  // Curves have all times of the first finished case.
   for (const SweepCurve& curve : all.curves) {
     for (const char* what : {" mean", " deviation"}) cells.push_back(csv_cell(curve.name + what));
     for (const double p : told_quantiles)

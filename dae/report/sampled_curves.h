@@ -1,5 +1,5 @@
 #pragma once
-// Curves through samples and films of sampled poses, as pages of poses and of efforts have them.
+// Curves through samples and films of sampled poses, for pages of poses and efforts.
 
 #include <momenta/dae/study/picture.h>
 
@@ -14,18 +14,17 @@ namespace momenta {
 
 /// Curves of one unit over the same samples.
 struct SampledCurves {
-  std::string key, title;  ///< the title has the unit in it
+  std::string key, title;  ///< title with the unit
   std::string x_title;     ///< empty: time
-  std::string unit, file;  ///< file: where curves stand that a page leaves out
+  std::string unit, file;  ///< file: place of curves that a page leaves out
   std::vector<std::pair<std::string, std::vector<double>>> curves;  ///< names, values
 };
 
-/// Adds a chart (dae/report/page/timeline.js) of those curves over x; none where there are none. A
-/// page holds 24.
+/// At most 24 curves over x (dae/report/page/timeline.js); no chart without curves.
 void add_chart(nlohmann::ordered_json& charts, const std::vector<double>& x,
                const SampledCurves& sampled);
 
-/// The poses q(i) of ascending x at equal steps of x, so many intervals, straight between them.
+/// Poses q(i) at equal steps of ascending x, linear between samples.
 Film film_of(const std::vector<double>& x,
              const std::function<const Eigen::VectorXd&(std::size_t)>& q, int intervals);
 

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 std::string form_text(const RunSettings& s) {
   return s.form + (s.project ? ", projected" : "");
 }
-/// Of forms with impulses, unless there is none.
+/// Gauge of forms with impulses, "" without one.
 std::string gauge_text(const RunSettings& s) {
   return s.gauge.empty() || s.gauge == "none" ? "-" : s.gauge;
 }
@@ -35,8 +35,7 @@ std::string in_words(const RunResult& run) {
          std::to_string(run.counters.evaluations) + " evaluations";
 }
 
-/// What a table does not say of a problem: its reference, its failures, what meets the source's
-/// bounds.
+/// Beside the table: a problem's reference, failures, runs within the source's bounds.
 std::vector<std::string> remarks(const SceneProblemResult& p) {
   std::vector<std::string> lines;
   if (!p.why.empty()) lines.push_back(p.why);

@@ -1,6 +1,6 @@
 #pragma once
-// What is told of a suite of mechanisms: a row for each run, as text, CSV, JSON and a page. Keys
-// and columns are public interface.
+// Report on a suite of mechanisms: a row for each run, as text, CSV, JSON and a page. Keys and
+// columns are public interface.
 
 #include <momenta/dae/study/run_result.h>
 #include <momenta/dae/study/scene_suite.h>
@@ -10,12 +10,12 @@
 
 namespace momenta {
 
-/// A row for each run: error, drifts, energy, work; then references, and the cheapest run within
-/// each error that a source accepts.
+/// A row a run: error, drifts, energy, work; then references, and the cheapest run within each
+/// error bound of a source.
 std::string suite_table(const SceneSuiteResult&);
 std::string suite_csv(const SceneSuiteResult&);
 nlohmann::ordered_json suite_json(const SceneSuiteResult&, const Environment&);
-/// Error against evaluations for each problem, and the table. Without script.
+/// Error against evaluations by problem, and the table. Without script.
 std::string suite_page(const SceneSuiteResult&, const Environment&, const std::string& command);
 
 }  // namespace momenta

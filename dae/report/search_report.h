@@ -1,7 +1,7 @@
 #pragma once
-// What reports of searches for parameters have in common, fits and functionals alike: the starts in
-// words, parameters and conditions before and after, charts over the swept coordinate. Keys are
-// public interface: docs/reference/fit.md.
+// Common parts of reports of searches for parameters, fits and functionals alike: starts in words,
+// parameters and conditions before and after, charts over the swept coordinate. Keys are public
+// interface: docs/reference/fit.md.
 
 #include <momenta/dae/fit/fit.h>
 
@@ -11,8 +11,8 @@
 
 namespace momenta {
 
-/// " A minimum, of one start.", " The least of 3 minima from 8 starts, seed 1.", or why the best
-/// one is none. `Result` is FitResult or LeastResult.
+/// " A minimum, of one start.", " The least of 3 minima from 8 starts, seed 1.", or why the best is
+/// none. `Result` is FitResult or LeastResult.
 template <class Result>
 std::string starts_in_words(const Result& r) {
   std::size_t minima = 0;
@@ -28,43 +28,40 @@ std::string starts_in_words(const Result& r) {
   return text;
 }
 
-/// Names of the parameters whose found value is an end of their range.
+/// Parameters found at an end of their range.
 std::vector<std::string> at_ends(const std::vector<FittedParameter>& parameters,
                                  const Eigen::VectorXd& found);
-/// " At an end of its range: 'a'."; empty where none is.
+/// " At an end of its range: 'a'."; or empty.
 std::string at_ends_in_words(const std::vector<FittedParameter>& parameters,
                              const Eigen::VectorXd& found);
 
-/// Parameters of the scene and found, with their ranges, as a table; with standard deviations where
-/// there are some.
+/// Parameters of the scene and found, with ranges and standard deviations, if any.
 std::string parameters_table(const std::vector<FittedParameter>& parameters,
                              const Eigen::VectorXd& own, const Eigen::VectorXd& found,
                              const Eigen::VectorXd& deviations = {});
-/// The same by name: {"a": {before, after, deviation, from, to}}.
+/// Parameters by name: {"a": {before, after, deviation, from, to}}.
 nlohmann::ordered_json parameters_json(const std::vector<FittedParameter>& parameters,
                                        const Eigen::VectorXd& own, const Eigen::VectorXd& found,
                                        const Eigen::VectorXd& deviations = {});
 /// [{from, to, cost, iterations, cosine, slope, violation, converged, why}]
 nlohmann::ordered_json starts_json(const std::vector<FittedParameter>& parameters,
                                    const std::vector<FitStart>& starts);
-/// Values by name: {"a": 1.5}; null where there are none.
+/// Values by name: {"a": 1.5}; null without values.
 nlohmann::ordered_json values_json(const std::vector<FittedParameter>& parameters,
                                    const Eigen::VectorXd& values);
 
-/// Of conditions: [{condition, before, after, multiplier}], as fit.json has them.
+/// Conditions as in fit.json: [{condition, before, after, multiplier}].
 nlohmann::ordered_json kept_json(const std::vector<KeptCondition>& keep);
-/// The same as a table; empty without conditions.
+/// Empty without conditions.
 std::string kept_table(const std::vector<KeptCondition>& keep);
 
-/// A curve of a chart: a value for each place.
 struct SweptCurve {
   const char* name;
   Eigen::VectorXd values;
   int colour;
   std::vector<int> dash;
 };
-/// Charts over places of the swept coordinate, in their order along it and counted from `first`, as
-/// pages have them (dae/report/page/timeline.js).
+/// Charts over the swept coordinate from `first` (dae/report/page/timeline.js).
 class SweptCharts {
  public:
   SweptCharts(const Column& swept, const std::vector<double>& places, double first);

@@ -29,7 +29,7 @@ std::string start_in_words(const SectionPicture& p, const SectionOrbit& o) {
   return p.varied.empty() ? "the scene's start" : p.varied + " = " + compact(o.value, 6);
 }
 
-/// The column's number at each point.
+/// Calls act(x, y) at each point.
 template <class Act>
 void each_point(const SectionPicture& p, const SectionOrbit& o, Act&& act) {
   const auto& columns = o.run.trajectory.columns;

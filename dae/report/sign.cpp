@@ -11,8 +11,7 @@ struct Preferred {
   const char* form;
   int colour;
 };
-/// Every form has its colour on every page; where a page has more than eight, later ones share it
-/// with a dash.
+/// Every form has its colour on all pages; beyond eight, later ones share it with a dash.
 constexpr std::array<Preferred, 16> preferred{{{"momentum", 0},
                                                {"acceleration", 1},
                                                {"momentum-stabilised", 2},

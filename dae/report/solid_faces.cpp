@@ -19,8 +19,7 @@ void add_arc(Profile& profile, int pieces, double from, double to, double radius
   }
 }
 
-/// The profile turned about z, stretched along the axes; closed by discs where it ends off the
-/// axis.
+/// The profile turned about z, stretched along the axes; discs close open ends.
 std::vector<Face> turned(const Profile& profile, const Vector3d& stretch) {
   constexpr int sides = 14;
   const auto corner = [&](std::size_t ring, int side) -> Vector3d {

@@ -9,8 +9,7 @@ namespace momenta {
 
 using Face = std::vector<Eigen::Vector3d>;
 
-/// Faces of a solid: a box by six, round ones by surfaces of 14 sides about their axis, a mesh by
-/// its triangles. O(faces)
+/// Six faces of a box, 14 sides about the axis of a round solid, triangles of a mesh. O(faces)
 std::vector<Face> faces_of(const Picture& picture, const Picture::Solid& solid);
 
 }  // namespace momenta

@@ -99,7 +99,8 @@ class StateDocument {
       }
       prescribed(joint.name, q, v, acceleration);
     }
-    std::map<std::string, std::array<std::vector<double>, 3>> of_loops;  // in the order of drives
+    std::map<std::string, std::array<std::vector<double>, 3>> of_loops;  // values in the order of
+                                                                         // drives
     for (const DriveSpec& drive : mechanism_.scene().drives) {
       if (drive.loop.empty()) continue;
       double f, rate, second;
@@ -125,7 +126,7 @@ class StateDocument {
   void loops() {
     w_.open("loops");
     const std::vector<RowName>& rows = mechanism_.rows();
-    std::size_t row = 0;  // rows stand loop by loop
+    std::size_t row = 0;  // rows are ordered by loop
     for (std::size_t i = 0; i < s_.reactions.loops.size(); ++i) {
       const Transmitted& r = s_.reactions.loops[i];
       const auto first = static_cast<Eigen::Index>(row);

@@ -1,5 +1,5 @@
 #pragma once
-// Everything at one state, as one JSON document; keys and units: docs/reference/evaluate.md.
+// All quantities at a state, as a JSON document; keys and units: docs/reference/evaluate.md.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/study/state_values.h>

@@ -7,7 +7,7 @@
 namespace momenta {
 namespace {
 
-/// Options by which BDF takes the run: a method with memory takes no alteration of its state.
+/// Options for a run by BDF, whose memory allows no change of the state.
 std::string implicit_instead(const RunSettings& s) {
   if (needs_one_step_method(s.form)) return "--form momentum --integrator bdf";
   const bool altering = s.gauge == "reset" || s.gauge == "flip";

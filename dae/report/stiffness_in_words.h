@@ -1,6 +1,6 @@
 #pragma once
-// What a run says of stiffness: since when stability held the steps of an explicit method, and what
-// went on in its place or is to be chosen.
+// Stiffness of a run: since when stability held the steps of an explicit method, and the method
+// that took over or is to be chosen.
 
 #include <momenta/dae/study/run_result.h>
 
@@ -8,7 +8,7 @@
 
 namespace momenta {
 
-/// One sentence; empty where no stiffness was found.
+/// One sentence; empty without stiffness.
 std::string stiffness_in_words(const RunResult& run);
 
 }  // namespace momenta

@@ -14,8 +14,7 @@ std::string counted(std::size_t n, const std::string& one, const std::string& mo
   return std::to_string(n) + " " + (n == 1 ? one : more);
 }
 
-/// Where drives take the mechanism from its start, what they leave free moving as little as it can;
-/// the start alone without drives.
+/// Motion by drives with the least motion of free coordinates; the start alone without drives.
 Film driven_film(const Mechanism& mechanism, const Assembly& assembly) {
   constexpr int frames = 400;
   Eigen::VectorXd q = assembly.start.q;

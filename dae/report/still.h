@@ -1,5 +1,5 @@
 #pragma once
-// A mechanism as pages show it: in words, standing at its start, and as its runs moved it.
+// A mechanism on pages: in words, at its start, and moving in its runs.
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/mechanism.h>
@@ -11,16 +11,16 @@
 
 namespace momenta {
 
-/// What there is to see, in a sentence or two.
+/// The mechanism in a sentence or two.
 std::string still_words(const Mechanism& mechanism, const Assembly& assembly);
 
-/// @throws std::invalid_argument for a mechanism too large to be drawn
+/// @throws std::invalid_argument for too large a mechanism
 void expect_drawable(const Mechanism& mechanism);
 
-/// The mechanism's picture and the motions of the runs that were filmed; without any, where drives
-/// alone take it up to the end of the scene's run (what they leave free stands still), else its
-/// start. Meshes are drawn by at most so many bytes. Nothing of a mechanism too large to be drawn.
-/// @returns what was left out of the picture, a sentence each
+/// The mechanism's picture and the filmed motions; without any, the motion by drives up to the end
+/// of the scene's run (free coordinates stand still), else its start. Meshes take at most
+/// `mesh_bytes`. Nothing for a mechanism too large to be drawn.
+/// @returns a sentence for each part left out of the picture
 std::vector<std::string> show(StudyResult& study, const Mechanism& mechanism,
                               const Assembly& assembly, std::size_t mesh_bytes = usual_mesh_bytes);
 

@@ -102,7 +102,7 @@ std::string summary_section(const StressResult& study) {
                  tag("thead", "", tag("tr", "", head)) + tag("tbody", "", rows)));
 }
 
-/// Who survived most, and who was wrong without a word.
+/// Contestants that survived most, and silent errors.
 std::string answer(const StressResult& study) {
   if (study.contestants.empty()) return "Nothing was run.";
   std::size_t best = 0;
@@ -114,7 +114,7 @@ std::string answer(const StressResult& study) {
     tried += t.tried();
   }
   const Tally t = tally(study, best);
-  int others = 0;  // as many rungs as the best
+  int others = 0;  // others with as many rungs as the best
   for (std::size_t c = 0; c < study.contestants.size(); ++c)
     others += c != best && tally(study, c).survived == t.survived;
   const std::string equals =
@@ -147,7 +147,7 @@ std::string how_section(const StressResult& study) {
                   pair("Processor", study.environment.cpu) + pair("Date", study.environment.date)));
 }
 
-/// Custom properties of the light page.
+/// Colours of the light page.
 std::string verdict_colours() {
   std::string css;
   for (const Verdict v : {Verdict::survived, Verdict::slow, Verdict::stopped, Verdict::wrong})

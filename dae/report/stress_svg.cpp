@@ -11,7 +11,7 @@ namespace {
 
 constexpr double row_height = 26, head_height = 64, cell_width = 124;
 
-/// The letters and digits of a name, joined by "_".
+/// Letters and digits of a name, joined by "_".
 std::string file_name(const std::string& name) {
   std::string file;
   for (const char c : name) {

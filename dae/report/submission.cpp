@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-/// Small letters and digits, one - for what lies between.
+/// Lower-case letters and digits, others as one "-".
 std::string for_a_file(const std::string& name) {
   std::string text;
   for (const char c : name) {

@@ -35,7 +35,8 @@ std::string element(std::string_view name, const Attributes& attributes,
 
 namespace {
 
-/// The dot of Φ̇ above its letter, where fonts put it inside: by a spacing dot, moved back and up.
+/// Moves the dot of Φ̇ above its letter, where fonts put it inside: a spacing dot, moved back and
+/// up.
 std::string dotted(std::string words) {
   const std::string_view rate = "Φ\u0307";
   constexpr std::string_view lifted =

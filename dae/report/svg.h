@@ -23,11 +23,11 @@ std::string text(double x, double y, const std::string& words, const char* ancho
 
 std::string line(double x0, double y0, double x1, double y1, const char* stroke, double width);
 
-/// The whole file: white ground, title and description, a sans-serif of 14 px.
+/// White ground, title and description, a sans-serif of 14 px.
 std::string document(double width, double height, const std::string& title,
                      const std::string& description, const std::string& inside);
 
-/// About how wide words are [px].
+/// Approximate width of words [px].
 double width_of(const std::string& words);
 
 }  // namespace momenta::svg

@@ -18,7 +18,7 @@ std::map<std::string, std::size_t> counts(const std::vector<SweepCase>& cases) {
   return all;
 }
 
-/// The case where a measure is greatest; none where it was nowhere measured.
+/// The case with the greatest measure; null: measured nowhere.
 const SweepCase* greatest(const std::vector<SweepCase>& cases, const SweepMeasure& measure) {
   const SweepCase* best = nullptr;
   for (const SweepCase& c : cases) {
@@ -28,7 +28,7 @@ const SweepCase* greatest(const std::vector<SweepCase>& cases, const SweepMeasur
   return best;
 }
 
-/// Of the first case that has loops: what is varied are numbers, rows and their units stay.
+/// Unit of the first case with loops: cases differ in numbers, not in rows.
 std::string drift_unit(const std::vector<SweepCase>& cases) {
   const auto looped = std::find_if(cases.begin(), cases.end(),
                                    [](const SweepCase& c) { return !c.drift_unit.empty(); });

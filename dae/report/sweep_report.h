@@ -1,6 +1,5 @@
 #pragma once
-// What `momenta sweep` prints and writes. Columns of the CSV and keys of the JSON are public
-// interface.
+// Output of `momenta sweep`. Columns of the CSV and keys of the JSON are public interface.
 
 #include <momenta/dae/study/sweep_statistics.h>
 
@@ -9,18 +8,17 @@
 
 namespace momenta {
 
-/// One row per case in the order of their numbers: case, the varied numbers, status, stopped_at,
-/// drifts, energy error, steps, evaluations, last, least and greatest of each watched column, and
-/// the reason. No times: the same study gives the same text on any number of threads or processes.
+/// One row a case by number: case, the varied numbers, status, stopped_at, drifts, energy error,
+/// steps, evaluations, last, least and greatest of each watched column, and the reason. No times:
+/// the text is the same on any number of threads or processes.
 std::string sweep_csv(const SweepRequest&, const std::vector<SweepCase>&);
 
-/// How many cases ended how, the extremes of every measure and where they are, and processor time;
-/// with
-/// `statistics`, those of a sample, what sample_report.h says.
+/// Cases by end, extremes of every measure and their cases, processor time; `statistics` of a
+/// sample add the keys of sample_report.h.
 nlohmann::ordered_json sweep_json(const SweepRequest&, const std::vector<SweepCase>&,
                                   const SweepStatistics* statistics = nullptr);
 
-/// The same in words and, of few cases, every one in a line.
+/// Words, with a line for each of few cases.
 std::string sweep_table(const SweepRequest&, const std::vector<SweepCase>&,
                         const SweepStatistics* statistics = nullptr);
 

@@ -9,8 +9,7 @@
 namespace momenta {
 namespace {
 
-constexpr std::size_t text_columns =
-    5;  // these stand at the left of their column, numbers at the right
+constexpr std::size_t text_columns = 5;  // left-aligned; numbers are right-aligned
 using Row = std::vector<std::string>;
 
 constexpr std::ptrdiff_t after_drifts = 7;
@@ -27,7 +26,7 @@ std::string count(long n) {
   return n < 10'000'000 ? std::to_string(n) : scientific(static_cast<double>(n), 3);
 }
 
-/// `both`: with the drifts of angles behind those of lengths.
+/// `both`: drifts of angles too.
 Row row_of(const RunResult& run, bool both) {
   const RunSettings& s = run.settings;
   Row row{s.form + (s.project ? "+project" : ""),

@@ -1,5 +1,5 @@
 #pragma once
-// The table that a study prints on the terminal.
+// The terminal's table of a study.
 
 #include <momenta/dae/study/run_result.h>
 
@@ -7,8 +7,8 @@
 
 namespace momenta {
 
-/// One row per run, columns padded to their widest cell; "-" where nothing was measured. Below it,
-/// one line for each run that did not finish: where it stopped and why.
+/// One row a run, columns padded; "-" for missing measurements. Below, one line for each run that
+/// did not finish: where it stopped and why.
 std::string drift_table(const StudyResult&);
 
 }  // namespace momenta

@@ -1,5 +1,5 @@
 #pragma once
-// Text put into the places that a page leaves for it.
+// Text for the places in a page.
 
 #include <string>
 #include <string_view>
@@ -8,8 +8,8 @@
 
 namespace momenta {
 
-/// `page` with each {{name}} replaced, in one pass: braces inside a replacement are never taken for
-/// a name. A name without replacement becomes nothing.
+/// Replaces each {{name}} in one pass: braces in replacements are plain text. A name without
+/// replacement is removed.
 std::string filled(std::string_view page,
                    const std::vector<std::pair<std::string_view, std::string>>& replacements);
 

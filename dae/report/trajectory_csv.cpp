@@ -14,7 +14,7 @@ class CsvTrajectory final : public TrajectoryFile {
                 std::string_view before)
       : part_(std::move(file), before), held_(before.empty() ? trajectory_head(labels) : "") {
     problem_ = part_.problem();
-    flush();  // the head, so that a full disk shows at once
+    flush();  // the head, to notice a full disk at once
   }
 
   bool write(const std::vector<double>& row) override {
@@ -23,7 +23,7 @@ class CsvTrajectory final : public TrajectoryFile {
     return (held_.size() < most_held && Clock::now() - flushed_ < longest_held) || flush();
   }
 
-  /// Lines are written whole: where there was no room for the last of them, its beginning goes.
+  /// Removes a partial last line.
   bool flush() override {
     if (!problem_.empty()) return false;
     const std::size_t before = part_.size();

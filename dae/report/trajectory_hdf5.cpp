@@ -17,7 +17,6 @@ namespace momenta {
 
 namespace {
 
-/// A handle of HDF5 with the function that closes it.
 class Handle {
  public:
   Handle() = default;
@@ -32,7 +31,7 @@ class Handle {
   }
   explicit operator bool() const { return id_ >= 0; }
   hid_t id() const { return id_; }
-  /// False when what was still to be written could not be.
+  /// False when the rest could not be written.
   bool reset() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
@@ -40,7 +39,6 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// A text as an attribute.
 bool write_text(hid_t at, const std::string& name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   if (!type || !space || H5Tset_size(type.id(), std::max<std::size_t>(1, text.size())) < 0 ||
@@ -54,16 +52,16 @@ bool write_text(hid_t at, const std::string& name, const std::string& text) {
 constexpr std::size_t most_numbers = 1 << 21;  // numbers of a chunk of all columns: 16 MB
 constexpr hsize_t most_rows = 4096, least_rows = 16;
 
-/// HDF5 1.10 does not survive a write that fails: such a file can neither be closed nor read, and
-/// the library's own exit crashes. So room is taken before each chunk is written, behind what the
-/// file holds, and enough for what closing it adds.
+/// HDF5 1.10 does not survive a failed write: the file can neither be closed nor read, and the
+/// library crashes at exit. So room is reserved before each chunk, behind the file's content, and
+/// enough to close it.
 class Hdf5Trajectory final : public TrajectoryFile {
  public:
   Hdf5Trajectory(std::filesystem::path file, const std::vector<std::string>& columns,
                  const std::vector<std::pair<std::string, std::string>>& texts)
       : path_(std::move(file)), part_(path_) {
     part_ += ".part";
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // sentences are this program's own
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // messages are this program's own
     std::error_code failure;
     if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), failure);
     if (failure)
@@ -99,7 +97,7 @@ class Hdf5Trajectory final : public TrajectoryFile {
     whole = H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) >= 0 &&
             H5Fget_filesize(file_.id(), &size) >= 0 && whole;
     whole = file_.reset() && whole;
-    // The room that was left goes; were it more than that, the file could not be opened again.
+    // Removes reserved room, and no more: else the file could not be opened.
     whole = whole && ::ftruncate(descriptor_, static_cast<off_t>(size)) == 0 &&
             Handle(H5Fopen(part_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!whole) return fail("cannot be closed");
@@ -111,7 +109,7 @@ class Hdf5Trajectory final : public TrajectoryFile {
  private:
   void make(const std::vector<std::string>& columns,
             const std::vector<std::pair<std::string, std::string>>& texts) {
-    // Texts of any length as attributes: format 1.8.
+    // Attributes with texts of any length: format 1.8.
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
     file_ = Handle(H5Fcreate(part_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
@@ -136,7 +134,7 @@ class Hdf5Trajectory final : public TrajectoryFile {
     const Handle space(H5Screate_simple(1, &none, &any), H5Sclose);
     const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     const Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    // Chunks are written whole: nothing of them need be kept.
+    // Chunks are written whole, and need no cache.
     const Handle keeping(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     H5Pset_chunk_cache(keeping.id(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
     H5Pset_chunk(layout.id(), 1, &chunk_);
@@ -164,7 +162,7 @@ class Hdf5Trajectory final : public TrajectoryFile {
     return false;
   }
 
-  /// For a chunk of every column and what HDF5 notes of them, `more` bytes, and the summary.
+  /// Room for a chunk of every column with HDF5's notes on it, `more` bytes, and the summary.
   bool take_room(std::size_t more) {
     constexpr hsize_t of_file = 1 << 17, of_column = 1 << 12;
     hsize_t size = 0;
@@ -200,7 +198,7 @@ class Hdf5Trajectory final : public TrajectoryFile {
   std::vector<Handle> columns_;
   hsize_t chunk_ = most_rows, written_ = 0;
   std::vector<std::vector<double>> held_;  ///< by column, up to a chunk
-  int descriptor_ = -1;                    ///< of the same file, to take room
+  int descriptor_ = -1;                    ///< the same file, to reserve room
   bool finished_ = false;
 };
 

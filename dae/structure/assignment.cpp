@@ -5,10 +5,10 @@
 namespace momenta::structure {
 namespace {
 
-/// Looks for an augmenting path from an equation; `seen` are the variables it has met.
+/// Augmenting path from an equation; `seen`: variables on it.
 bool augment(const Signature& s, int equation, std::vector<char>& seen, std::vector<int>& variable,
              std::vector<int>& equation_of) {
-  // Depth first, without recursion: paths may be as long as the system is large.
+  // Depth first, without recursion: paths may be long.
   struct Place {
     int equation, next;
   };
@@ -39,7 +39,7 @@ bool augment(const Signature& s, int equation, std::vector<char>& seen, std::vec
 }  // namespace
 
 std::optional<std::vector<int>> highest_assignment(const Signature& s) {
-  // Costs −σ; an absent entry costs more than any assignment without one can.
+  // Costs −σ; an absent entry costs more than any complete assignment.
   const int n = s.size();
   long largest = 1;
   for (int i = 0; i < n; ++i)
@@ -47,8 +47,8 @@ std::optional<std::vector<int>> highest_assignment(const Signature& s) {
       if (s.has(i, j)) largest = std::max(largest, std::abs(static_cast<long>(s(i, j))));
   const long none = 4 * largest * (n + 1);
   const auto cost = [&](int i, int j) { return s.has(i, j) ? -static_cast<long>(s(i, j)) : none; };
-  // Dual variables u of equations, v of variables, with cost(i, j) ≥ u_i + v_j; numbered from 1, 0
-  // stands for none.
+  // Dual variables u of equations, v of variables, with cost(i, j) ≥ u_i + v_j; numbered from 1, 0:
+  // none.
   std::vector<long> u(at(n + 1)), v(at(n + 1));
   std::vector<int> equation_of(at(n + 1)), from(at(n + 1));
   for (int i = 1; i <= n; ++i) {

@@ -1,5 +1,5 @@
-// The algorithm as Pantelides gives it: nodes for variables and their derivatives, which grow, and
-// nodes for equations and their derivatives. Only highest derivatives may be matched.
+// The algorithm in Pantelides' terms: growing sets of nodes for variables and equations with their
+// derivatives. Only highest derivatives may be matched.
 
 #include <momenta/dae/structure/sigma_method.h>
 
@@ -10,7 +10,7 @@ class Graph {
  public:
   explicit Graph(const Signature& s) {
     const auto n = static_cast<std::size_t>(s.size());
-    // x_j has number j; where x_j' stands anywhere it is a node of its own.
+    // x_j has number j; x_j' has a node of its own if it occurs.
     derivative_.assign(n, none);
     for (int j = 0; j < s.size(); ++j)
       for (int i = 0; i < s.size(); ++i)
@@ -81,7 +81,6 @@ class Graph {
     return false;
   }
 
-  /// The equations met, and the variables among them.
   void differentiate() {
     const std::size_t variables = variable_seen_.size(), equations = equation_seen_.size();
     for (std::size_t v = 0; v < variables; ++v)
@@ -100,8 +99,8 @@ class Graph {
       if (variable_seen_[v]) matched_[derivative_[v]] = differentiated_[matched_[v]];
   }
 
-  std::vector<std::size_t> derivative_, matched_;    ///< of variables: x', and who is assigned
-  std::vector<std::vector<std::size_t>> variables_;  ///< of equations
+  std::vector<std::size_t> derivative_, matched_;    ///< variables' x', assigned equation
+  std::vector<std::vector<std::size_t>> variables_;  ///< equations' variables
   std::vector<std::size_t> differentiated_, root_;
   std::vector<int> order_;
   std::vector<bool> variable_seen_, equation_seen_;

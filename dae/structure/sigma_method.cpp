@@ -14,7 +14,7 @@ std::optional<Offsets> sigma_method(const Signature& s) {
   o.transversal = *std::move(transversal);
   o.equation.assign(at(n), 0);
   o.variable.assign(at(n), 0);
-  // From c = 0 upwards: what comes first is least. It ends, as T is of highest value.
+  // From c = 0 upwards, the first solution is the least. It ends, as T has the highest value.
   for (bool moved = true; moved;) {
     moved = false;
     for (int j = 0; j < n; ++j)

@@ -1,5 +1,5 @@
 #pragma once
-// The Σ-method: how often each equation is to be differentiated, from the signature alone.
+// The Σ-method: number of differentiations of each equation, from the signature alone.
 //
 // With T a highest-value transversal, the least offsets c_i, d_j ≥ 0 with
 //
@@ -12,8 +12,8 @@
 //
 // is regular. The structural index is max c_i, plus one where some d_j = 0; degrees of freedom are
 // Σ d_j − Σ c_i. Where J is regular at a point the differentiation index is at most the structural
-// one; where J is singular structure says nothing of it. Source: Pryce, A simple structural
-// analysis method for DAEs, BIT 41 (2001).
+// one; a singular J leaves it open. Source: Pryce, A simple structural analysis method for DAEs,
+// BIT 41 (2001).
 
 #include <momenta/dae/structure/signature.h>
 
@@ -24,12 +24,12 @@ namespace momenta::structure {
 
 struct Offsets {
   std::vector<int> transversal;  ///< the variable of each equation
-  std::vector<int> equation;     ///< c_i, the least there are
+  std::vector<int> equation;     ///< c_i, the least
   std::vector<int> variable;     ///< d_j
   int index = 0;                 ///< structural
   int freedom = 0;               ///< degrees of freedom, the value of the transversal
 
-  /// Whether entry (i, j) stands in the system Jacobian.
+  /// Whether entry (i, j) is in the system Jacobian.
   bool tight(const Signature& s, int i, int j) const {
     return s.has(i, j) &&
            variable[static_cast<std::size_t>(j)] - equation[static_cast<std::size_t>(i)] == s(i, j);
@@ -39,8 +39,8 @@ struct Offsets {
 /// Nothing where the system is structurally singular. O(n³), and O(n²) for each differentiation.
 std::optional<Offsets> sigma_method(const Signature& signature);
 
-/// How often Pantelides' algorithm differentiates each equation: until the equations can be
-/// assigned to the highest derivatives, it differentiates those of which too few are there.
+/// Number of differentiations of each equation in Pantelides' algorithm: until equations can be
+/// assigned to the highest derivatives, it differentiates those with too few of these.
 /// @pre σ_ij ≤ 1, and sigma_method() finds offsets: else it does not end. O(n³) for each
 /// differentiation. Source: Pantelides, The consistent initialization of differential-algebraic
 /// systems, SIAM J. Sci. Stat. Comput. 9 (1988).

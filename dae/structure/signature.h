@@ -1,10 +1,10 @@
 #pragma once
-// Which derivatives stand in which equation of a DAE: the signature matrix
+// The signature matrix of a DAE: derivatives in each equation,
 //
-//   σ_ij = the highest order of a derivative of x_j that equation i has; absent where it has none,
+//   σ_ij = the highest order of a derivative of x_j in equation i; absent without x_j,
 //
-// all that structural analysis knows of the equations. Source: Pryce, A simple structural analysis
-// method for DAEs, BIT 41 (2001).
+// the input of structural analysis. Source: Pryce, A simple structural analysis method for DAEs,
+// BIT 41 (2001).
 
 #include <cstddef>
 #include <limits>
@@ -12,7 +12,6 @@
 
 namespace momenta::structure {
 
-/// A number of an equation or a variable, as vectors take it.
 inline std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -23,7 +22,7 @@ class Signature {
 
   explicit Signature(int size) : size_(size), order_(at(size) * at(size), absent) {}
 
-  int size() const { return size_; }  ///< of equations, and of variables
+  int size() const { return size_; }  ///< equations, and variables
   int& operator()(int equation, int variable) { return order_[place(equation, variable)]; }
   int operator()(int equation, int variable) const { return order_[place(equation, variable)]; }
   bool has(int equation, int variable) const { return (*this)(equation, variable) != absent; }

@@ -1,5 +1,5 @@
 #pragma once
-// A line of a CSV file taken apart.
+// Cells of a line of a CSV file.
 
 #include <string>
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace momenta {
 
-/// The cells between commas, without blanks and quotes around them and without a carriage return at
-/// the line's end. Cells of numbers and plain names: no comma stands in quotes.
+/// Cells between commas, without blanks and quotes around them or a carriage return at the end. For
+/// numbers and plain names: no commas in quotes.
 std::vector<std::string> csv_cells(std::string_view line);
 
 }  // namespace momenta

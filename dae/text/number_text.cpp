@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-// "2.70e-05" → "2.7e-5": neither zeros that carry nothing nor a plus sign.
+// "2.70e-05" → "2.7e-5": without idle zeros and plus sign.
 std::string tidy(const std::string& text) {
   const auto e = text.find('e');
   std::string mantissa = text.substr(0, e);
@@ -41,7 +41,7 @@ std::string with_prefix(double value, const char* unit, const std::array<Prefix,
   if (size == 0) return std::string("0 ") + unit;
   if (!std::isfinite(value) || size >= base_from) return compact(value, 2) + ' ' + unit;
   for (const Prefix& prefix : prefixes) {
-    // 0.9995 of the unit would print as 1.0 of it already.
+    // 0.9995 of the unit would print as 1.0 of it.
     if (size >= 0.9995 * prefix.unit)
       return compact(value / prefix.unit, 2) + ' ' + prefix.name + unit;
   }
@@ -71,7 +71,7 @@ std::string compact(double value, int digits) {
   if (std::isnan(value) || std::isinf(value) || value == 0) return scientific(value, digits);
   const double size = std::abs(value);
   if (size < 1e-3 || size >= 1e4) return scientific(value, digits);
-  // Round to the digits asked for first: 0.0996 with two digits is 0.1, and has one decimal less.
+  // Rounds to the digits first: 0.0996 with two digits is 0.1, and has one decimal less.
   const std::string rounded = format(value, std::chars_format::scientific, digits - 1);
   double kept = 0;
   std::from_chars(rounded.data(), rounded.data() + rounded.size(), kept);
@@ -82,7 +82,7 @@ std::string compact(double value, int digits) {
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return scientific(value, 1);
   const std::string text = format(value, std::chars_format::fixed, decimals);
-  // -0.00 is no number anyone means.
+  // -0.00 becomes 0.00
   return text.find_first_of("123456789") == std::string::npos && text.front() == '-'
              ? text.substr(1)
              : text;

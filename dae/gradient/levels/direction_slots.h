@@ -1,7 +1,6 @@
 #pragma once
 // Slots of one state and one direction: values and derivatives fill registers each, as the values
-// of one state alone do (dae/sweeps/slots/slots.h). What the sweeps that carry loops choose, they
-// choose by values, and derivatives come along.
+// of one state do (dae/sweeps/slots/slots.h). Sweeps choose by values, and derivatives come along.
 
 #include <momenta/core/scalar/dual.h>
 #include <momenta/dae/sweeps/slots/slots.h>
@@ -134,7 +133,7 @@ MOMENTA_INLINE Slots<Directions<1, L>, Rows> where_greater(const Directions<1, L
               where_greater(a.a, b.a, x.slopes(), y.slopes()));
   return chosen;
 }
-/// What tells the size of a pivot to the choice of the next one.
+/// Size of a pivot, to choose the next one.
 template <int L>
 MOMENTA_INLINE double size_of(const Directions<1, L>& x) {
   return x.a.v > 0 ? x.a.v : 0;

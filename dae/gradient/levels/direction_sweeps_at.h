@@ -10,7 +10,7 @@
 
 namespace momenta {
 
-// Values are alike in all lanes: what is chosen by them is chosen of all directions.
+// Values are alike in all lanes: a choice holds for all directions.
 template <int W, int L>
 MOMENTA_INLINE Directions<W, L> where_greater(const Directions<W, L>& a, const Directions<W, L>& b,
                                               const Directions<W, L>& x,
@@ -37,7 +37,7 @@ struct LanesIn {
     return s;
   }
 };
-/// Where results go, read back while they are made.
+/// Results, read back while they are made.
 template <int W, int L>
 struct LanesOut {
   Directions<W, L>* x;
@@ -95,10 +95,10 @@ class DirectionSweepsAt final : public DirectionSweeps {
   RightSide<S> right_;
   int nv_, m_;
   std::vector<S> numbers_;  ///< u, ṗ, σ
-  std::vector<S> besides_;  ///< of the second row
+  std::vector<S> besides_;  ///< added to the second row
 };
 
-/// Two widths of fronts for all plans: each has its groups of slots told apart.
+/// Two widths of fronts for all plans: each width has its own groups of slots.
 template <int Level, class Space, class Tree>
 std::unique_ptr<DirectionSweeps> direction_sweeps_at(const Tree& tree,
                                                      const SweptLoops<Space>& swept, double fade,

@@ -1,7 +1,7 @@
 #pragma once
-// What forces between points of bodies and along sums of coordinates have by their own numbers, and
-// what they hand to the bodies where places move. With the virtual motion b, z = −b the direction,
-// a force Q has −bᵀ ∂Q/∂n. Of a line of length l under the tension f(l, l̇), bᵀQ = −f D_b l, so
+// Slopes of forces between points of bodies and along sums of coordinates by their own numbers, and
+// their wrenches on the bodies where places move. With the virtual motion b, z = −b the direction,
+// a force Q has −bᵀ ∂Q/∂n. For a line of length l under the tension f(l, l̇), bᵀQ = −f D_b l, so
 //
 //   −bᵀ ∂Q/∂n = D_b(f̄ ∂l/∂n) + (f_l D_b l) ∂l/∂n + (f_l̇ D_b l) ∂l̇/∂n + (D_b l) ∂f/∂n,      (15)
 //
@@ -46,16 +46,15 @@ class ForceNumbers {
  public:
   ForceNumbers(const Model<Space>& model, Workspace<Space, S>& w) : model_(model), w_(w) {}
 
-  /// Whether forces choose by values what they are, dead bands, stops and turns of bushings: then
-  /// all lanes must have the same.
+  /// Whether forces choose by values (dead bands, stops, turns of bushings): all lanes need the
+  /// same.
   bool choose() const {
     return model_.has_corners || !model_.bushings.empty() ||
            std::any_of(model_.coordinate_springs.begin(), model_.coordinate_springs.end(),
                        [](const auto& spring) { return spring.band != 0; });
   }
 
-  /// Adds wrenches and what stands for the impulses of (15) to the T and P of the bodies. Needs
-  /// poses and velocities.
+  /// Adds wrenches and the impulses of (15) to T and P of the bodies. Needs poses and velocities.
   void hand_to_bodies() {
     for (const Spring& spring : model_.springs) {
       const Line line(w_, spring);
@@ -137,7 +136,7 @@ class ForceNumbers {
  private:
   static S product(const S& a, const S& b) { return a * b; }
   static S product(const Vec3<S>& a, const Vec3<S>& b) { return dot(a, b); }
-  /// What x changes by along the direction, as numbers of no value.
+  /// The change of x along the direction, of no value.
   static Vector changes(const Vector& x) {
     Vector all;
     for (int i = 0; i < axes; ++i) all[i].b[0] = x[i].b[0];
@@ -178,7 +177,7 @@ class ForceNumbers {
       impulse_rate = S(by_rate * inverse) * Vector(apart - speed * along);
     }
   };
-  /// A wrench whose force stays where the direction leads, and the couple that it has there.
+  /// A wrench whose force stays where the direction leads, and its couple there.
   struct Held {
     Vector x, force;
     Angular couple{};

@@ -1,5 +1,5 @@
 #pragma once
-// What σᵀΦ̇ and σᵀΦ have by the numbers of the loops, and what the loops hand to the bodies.
+// Slopes of σᵀΦ̇ and σᵀΦ by the numbers of the loops, and the loops' forces on the bodies.
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/dae/gradient/levels/placed_along.h>
@@ -10,8 +10,8 @@
 
 namespace momenta {
 
-/// The impulses σ of loops that are not driven, of points, axes and distances, as loop_rows.h has
-/// them, and what σᵀΦ̇ and σᵀΦ have by the numbers of these loops.
+/// The impulses σ of points, axes and distances (loop_rows.h) that are not driven, and the slopes
+/// of σᵀΦ̇ and σᵀΦ by the numbers of these loops.
 template <class Space, class S>
 class LoopNumbers {
   using Vector = typename Space::template Vector<S>;
@@ -22,7 +22,7 @@ class LoopNumbers {
   LoopNumbers(const LoopModel<Space>& model, Workspace<Space, S>& w)
       : model_(model), w_(w), at_(model.loops.size()) {}
 
-  /// Points and axes, and what the rows of each loop sum up to; needs poses and velocities.
+  /// Places points and axes, and sums up rows by loop; needs poses and velocities.
   void place(const S* sigma) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_.loops[i];
@@ -75,8 +75,8 @@ class LoopNumbers {
     }
   }
 
-  /// put(∂(σᵀΦ̇)/∂number), or of σᵀΦ, of the numbers of all loops. With f = Σ σ b that of x_A is
-  /// ḟ − ω_A × f, and f.
+  /// Calls put(∂(σᵀΦ̇)/∂number), or of σᵀΦ, for all loops' numbers. With f = Σ σ b the slope by x_A
+  /// is ḟ − ω_A × f, or f.
   template <class Put>
   void each(const S* sigma, bool of_rates, Put&& put) const {
     for (std::size_t i = 0; i < at_.size(); ++i) {

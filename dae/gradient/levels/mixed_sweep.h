@@ -13,7 +13,7 @@ namespace momenta {
 /// One object serves one thread; no call allocates.
 class MixedSweep {
  public:
-  /// At t [s]: q, u, u̇, ν of nv numbers, λ, μ of m; s of mixed_rates.h.
+  /// t [s]; q, u, u̇, ν of nv numbers; λ, μ of m; s of mixed_rates.h.
   struct At {
     double t;
     const double *q, *u, *udot, *lambda, *nu, *mu;
@@ -28,8 +28,8 @@ class MixedSweep {
   virtual void operator()(const At& at, const Result& result) = 0;
 };
 
-/// Whether a sweep has all that acts: weights and forces of joints, loops of points, axes and
-/// distances, and nothing prescribed.
+/// Whether nothing is prescribed and only weights, forces of joints, and loops of points, axes and
+/// distances act.
 template <class Space>
 bool mixed_sweep_fits(const Model<Space>& model, const LoopModel<Space>& loops) {
   return !model.has_body_forces() && model.drives.empty() && model.laws.empty() &&
@@ -39,8 +39,8 @@ bool mixed_sweep_fits(const Model<Space>& model, const LoopModel<Space>& loops) 
                       [](const auto& loop) { return loop.is_coupler(); });
 }
 
-/// By the level of best_level(). `joint_forces`: those of joints are among the potential ones, else
-/// left out. @pre it fits; both stay where they are
+/// The sweep at best_level(). `joint_forces`: those of joints are potential; else none are. @pre
+/// mixed_sweep_fits(); both arguments stay where they are
 template <class Space>
 std::unique_ptr<MixedSweep> make_mixed_sweep(const Model<Space>& model,
                                              const LoopModel<Space>& loops, bool joint_forces);

@@ -1,5 +1,5 @@
 #pragma once
-// MixedSweep at one level: what (13) of docs/theory/gradients.md takes stands in four lanes of one
+// MixedSweep at one level: the terms of (13) of docs/theory/gradients.md stand in four lanes of one
 // register, each with its direction, at the same pose:
 //
 //   lane   u        σ     δq  δu  δσ
@@ -8,7 +8,7 @@
 //   2      u        0     ν   0   0      D_(ν,0,0), with the weights
 //   3      0        μ     u   0   0      Φ_qᵀμ and its rate
 //
-// Forces that u has no part in are the same in lanes 0 and 1. Included by the files that are
+// Forces that do not depend on u are the same in lanes 0 and 1. Included by the files that are
 // compiled for a level, and nowhere else.
 
 #include <momenta/core/kernel/sweeps.h>
@@ -81,7 +81,7 @@ class MixedSweepAt final : public MixedSweep {
     x.b[0] = Lanes::load(slopes);
     return x;
   }
-  /// body[k].T of weights, in lane 2.
+  /// Adds weights to body[k].T, in lane 2.
   void weights() {
     if (model_.has_gravity) gravity_outward(w_);
     const S there = lanes({0, 0, 1, 0}, {0, 0, 0, 0});

@@ -1,7 +1,6 @@
 #pragma once
 // Loops of points, axes and distances whose numbers a θ moves: Φ̇ + βΦ, and impulses σ with their
-// inertial rates on the bodies, as loop_rows.h has them, of an S whose directions are in the
-// tables.
+// inertial rates on the bodies (loop_rows.h), for an S whose directions are in the tables.
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
@@ -21,15 +20,15 @@ class MovedLoops {
   /// @pre no loop is driven, of a curve, a wheel or an equation
   MovedLoops(const LoopModel<Space>& model, Workspace<Space, S>& w) : model_(model), w_(w) {}
 
-  /// r2 (m), and P and T of the bodies: σ, and its N − κ times it. dn(i): the change of number i of
-  /// the loops, NumberPlaces. Needs poses and velocities.
+  /// Fills r2 (m), and adds σ to P and its rates less κσ to T of the bodies. dn(i): the change of
+  /// number i of the loops, NumberPlaces. Needs poses and velocities.
   template <class Change>
   void add(const S* sigma, double leak, double beta, Change&& dn, S* r2) {
     Eigen::Index first = 0;
     for (const auto& l : model_.loops) {
       const Eigen::Index last = first + NumberPlaces<Space>::of_loop - 4;
       if (l.is_coupler())
-        r2[l.row] = -(beta * dn(last + 1));  // Φ̇ has no number of it
+        r2[l.row] = -(beta * dn(last + 1));  // not in Φ̇
       else
         add(
             l, sigma, leak, beta, [&](Eigen::Index i) { return dn(first + i); }, r2);

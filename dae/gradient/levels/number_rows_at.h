@@ -1,9 +1,8 @@
 #pragma once
-// NumberRows at one level; included by the files that are compiled for it, and nowhere else. Of
-// numbers in which r1, r3 are linear in plain numbers of their δ; with places of joints, loops and
-// springs in dual numbers of one θ a lane, whose directions are in the tables: by a small screw ξ
-// of a joint's place, fixed in the parent's axes, what the joint carries moves as if the parent had
-// moved,
+// NumberRows at one level; included by the files that are compiled for it, and nowhere else. Where
+// r1, r3 are linear in numbers, their δ are plain numbers; with places of joints, loops and
+// springs, dual numbers of one θ a lane, with directions in the tables. By a small screw ξ of a
+// joint's place, fixed in the parent's axes, the joint's load moves as if the parent had moved,
 //
 //   T → (1 + ξ) T,   Ω_L → Ω_L + Ω_L × ξ on the way out,   F → F + ξ × F on the way back,
 //
@@ -123,13 +122,13 @@ class NumberRowsAt final : public NumberRows {
   }
 
  private:
-  /// Shift and turn, or direction of a slide, of a joint.
+  /// Numbers of a joint's place: shift and turn, or direction of a slide.
   static constexpr Eigen::Index of_place = Numbers::of_joint - 6;
   struct Taken {
     std::vector<double> dn;
-    std::vector<std::size_t> bodies, joints, springs, sums;  ///< those that have some
+    std::vector<std::size_t> bodies, joints, springs, sums;  ///< indices that change
     bool gravity = false;
-    std::vector<char> moved;  ///< by body, whether its joint's place changes
+    std::vector<char> moved;  ///< by body: the place of its joint changes
   };
   static S number(const Taken& t, Eigen::Index i) {
     const Lanes dn = Lanes::load(t.dn.data() + lanes * i);
@@ -154,7 +153,7 @@ class NumberRowsAt final : public NumberRows {
     return v;
   }
 
-  /// δM Ω and the weight of δm, δ(m c).
+  /// Adds δM Ω and the weight of δm, δ(m c).
   void add_inertia(std::size_t k, const Taken& t) {
     auto& s = w_.body[k];
     const Eigen::Index first = Numbers::of_body * static_cast<Eigen::Index>(k);
@@ -181,7 +180,7 @@ class NumberRowsAt final : public NumberRows {
       w_.body[k].T += Space::weight(S(inertia.m), mc, g);
     }
   }
-  /// −δk s + k δrest − δc ṡ along the stretch s that the numbers at `first` are of.
+  /// −δk s + k δrest − δc ṡ along the stretch s; numbers from `first` on.
   S force(const Taken& t, Eigen::Index first, double stiffness, const S& stretch,
           const S& rate) const {
     return stiffness * number(t, first + 1) - number(t, first) * stretch -
@@ -193,7 +192,7 @@ class NumberRowsAt final : public NumberRows {
     if (!line.has_direction()) return;
     const Eigen::Index first =
         places_.springs + Numbers::of_spring * static_cast<Eigen::Index>(i) + 2 * axes;
-    if constexpr (Places) {  // what its moved ends pull, in the place of what its own do
+    if constexpr (Places) {  // pull of moved ends, not the spring's own
       using std::sqrt;
       const auto tension = [&](const SpringLine<Space, S>& at) {
         return S((spring.stiffness * (at.length - S(spring.rest)) +
@@ -293,7 +292,7 @@ class NumberRowsAt final : public NumberRows {
               Space::to_child(b.edge, b.kind, s.edge, Space::cross_motion(parent->V, screw(t, k)));
     }
   }
-  /// r2, and impulses and their rates on the bodies.
+  /// Fills r2, adds impulses and their rates to the bodies.
   void add_loops(const Taken& t, double* r2) {
     for (std::size_t i = 0; i < sigma_.size(); ++i)
       sigma_[i] = S(plain_sigma_ ? plain_sigma_[i] : 0.0);
@@ -340,7 +339,7 @@ class NumberRowsAt final : public NumberRows {
   Workspace<Space, S> w_;
   std::vector<S> q_, u_, r1_, r3_;
   std::vector<Taken> taken_;
-  // With places:
+  // With places alone:
   std::conditional_t<Places, std::optional<MovedLoops<Space, S>>, int> loops_{};
   std::vector<S> sigma_, r2_;
   double t_ = 0, leak_ = 0, beta_ = 0;

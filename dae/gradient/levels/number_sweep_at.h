@@ -1,16 +1,15 @@
 #pragma once
-// NumberSweep at one level: number_slopes.h says what is derived here. A number that places a
-// joint, an end of a loop or of a spring moves what hangs there by a small screw ξ, fixed in the
-// axes of the body that carries it. With Ω the motion of that body, the velocities of what is moved
-// change by Ω × ξ, so that
+// NumberSweep at one level; derivation: number_slopes.h. A number that places a joint, an end of a
+// loop or of a spring moves what hangs there by a small screw ξ, fixed in the axes of the body that
+// carries it. With Ω the motion of that body, velocities there change by Ω × ξ, so that
 //
 //   ∂L*/∂ξ = T* − Ω × P*
 //
-// of the forces T* and momenta P* that are handed through there, loop impulses with them: of a
-// joint those of (26), (27), summed over all that it carries.
+// of the forces T* and momenta P* that are handed through there, loop impulses included: at a joint
+// those of (26), (27), summed over all that it carries.
 //
-// Nothing here waits for anything else: motions are collected until each lane of a register has
-// one, and swept together.
+// Motions are collected until each lane of a register has one, and swept together: none depends on
+// another.
 
 #include <momenta/dae/gradient/levels/force_numbers.h>
 #include <momenta/dae/gradient/levels/loop_numbers.h>
@@ -40,7 +39,7 @@ class NumberSweepAt final : public NumberSweep {
       loops_.emplace(loops, place_.w);
       sigma_.resize(static_cast<std::size_t>(loops.rows));
     }
-    // Laws of time take one value for all lanes, and so do forces that choose by values.
+    // Laws of time take one value for all lanes, as do forces that choose by values.
     const bool apart = !model.drives.empty() || !model.laws.empty() || forces_.choose();
     together_ = apart ? 1 : width;
     for (Waiting& x : waiting_) x.numbers.resize(1 + 4 * place_.q.size() + 2 * sigma_.size());
@@ -65,15 +64,14 @@ class NumberSweepAt final : public NumberSweep {
 
  private:
   enum Kind { of_all, of_loop_rates, of_loops };
-  /// Motions until there is one for each lane: t, q, δq, u, δu, σ, δσ. Plain numbers are written,
-  /// one by one.
+  /// Motions until each lane has one: t, q, δq, u, δu, σ, δσ, as plain numbers.
   struct Waiting {
     std::vector<Lanes> numbers;
     double factors[width];
     int lanes = 0;
     double* of_lane(int i) { return reinterpret_cast<double*>(numbers.data()) + i; }
   };
-  /// Adds the derivative, or of what has none the value, to the next sum.
+  /// Adds the derivative, or a given value, to the next sum.
   struct Put {
     Lanes factor;
     bool derivative = true;
@@ -82,7 +80,7 @@ class NumberSweepAt final : public NumberSweep {
       *to += factor * (derivative ? x.b[0] : x.a);
       ++to;
     }
-    /// Of a force without potential: its value times what its coordinate does along the direction.
+    /// A force without potential: its value times its coordinate's change along the direction.
     void along(const S& force, const S& coordinate) {
       S all(0.0);
       all.b[0] = force.a * coordinate.b[0];
@@ -107,7 +105,7 @@ class NumberSweepAt final : public NumberSweep {
     const int lanes = x.lanes;
     x.lanes = 0;
     if (lanes == 0) return;
-    for (int i = lanes; i < width; ++i) {  // the others repeat the first, and count nothing
+    for (int i = lanes; i < width; ++i) {  // other lanes repeat the first, and count nothing
       const double* from = x.of_lane(0);
       double* to = x.of_lane(i);
       for (std::size_t k = 0; k < x.numbers.size(); ++k) to[k * width] = from[k * width];
@@ -116,7 +114,7 @@ class NumberSweepAt final : public NumberSweep {
     put_.derivative = kind != of_loops;
     place(x, [](const Lanes& all) { return all; });
     if (kind != of_all || lanes == 1 || !springs_vanish()) return put(kind, Lanes::load(x.factors));
-    // A spring without length is left out, of all lanes: there each goes by itself.
+    // A spring without its length is left out, of all lanes: each motion then goes alone.
     for (int i = 0; i < lanes; ++i) {
       place(x, [i](const Lanes& all) { return Lanes(all.lane(i)); });
       Lanes factor(0.0);
@@ -129,7 +127,7 @@ class NumberSweepAt final : public NumberSweep {
       if (!SpringLine<Space, S>(place_.w, spring).has_direction()) return true;
     return false;
   }
-  /// Poses and velocities, and σ, from what `of` takes of each number.
+  /// Poses, velocities and σ, of numbers made by `of`.
   template <class Of>
   void place(const Waiting& x, Of&& of) {
     const Lanes* from = x.numbers.data();
@@ -159,7 +157,6 @@ class NumberSweepAt final : public NumberSweep {
     put_.to = sums_.data() + places_.springs;
     forces_.each(put_);
   }
-  /// What loops hand to the bodies.
   void hand_to_bodies() {
     loops_->place(sigma_.data());
     loops_->hand_to_bodies();
@@ -209,7 +206,6 @@ class NumberSweepAt final : public NumberSweep {
     for (int i = 0; i < axes; ++i) put_(moment[i]);
   }
 
-  /// body[k].T of weights and forces.
   void weights_and_forces() {
     auto& w = place_.w;
     if (model_.has_gravity) gravity_outward(w);
@@ -223,7 +219,7 @@ class NumberSweepAt final : public NumberSweep {
     }
     forces_.hand_to_bodies();
   }
-  /// The numbers of joints; T* is summed on the way.
+  /// Numbers of joints; T* is summed on the way.
   void put_joints(bool of_rates, bool of_forces) {
     auto& w = place_.w;
     Lanes* const first = put_.to;
@@ -260,7 +256,7 @@ class NumberSweepAt final : public NumberSweep {
     }
     put_.to = first + stride * static_cast<Eigen::Index>(w.body.size());
   }
-  /// Where joint k is in its parent: T* − Ω × P*, in the parent's frame.
+  /// Place of joint k in its parent: T* − Ω × P*, in the parent's frame.
   void put_place(std::size_t k, const S& q, const S& u, bool of_rates) {
     auto& w = place_.w;
     const auto& b = model_.bodies[k];
@@ -304,7 +300,7 @@ class NumberSweepAt final : public NumberSweep {
   std::vector<S> sigma_;
   int together_;             ///< motions that are swept at once
   Waiting waiting_[3];       ///< by kind
-  std::vector<Lanes> sums_;  ///< of all numbers, lane by lane
+  std::vector<Lanes> sums_;  ///< sums of all numbers, lane by lane
   Put put_;
 };
 

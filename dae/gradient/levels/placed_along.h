@@ -1,7 +1,6 @@
 #pragma once
-// States and directions in lanes as the sweeps of bodies take them, in dual numbers of one
-// direction a lane, and what is asked of them: the axes of bodies, and how they turn along the
-// direction.
+// States and directions in lanes for the sweeps of bodies, in dual numbers of one direction a lane;
+// the axes of bodies, and how they turn along the direction.
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/gradient/levels/direction_slots.h>
@@ -46,8 +45,8 @@ auto in_body_axes(const Workspace<Space, S>& w, int k,
   }
 }
 
-/// Adds an impulse f at the point x of body k, whose velocity is u, to P, and what its rate ḟ and
-/// the motion of the point make of it to T.
+/// Adds an impulse f at the point x of body k, whose velocity is u, to P, and the terms of ḟ and
+/// the point's motion to T.
 template <class Space, class S>
 void hand_over(Workspace<Space, S>& w, int k, const typename Space::template Vector<S>& x,
                const typename Space::template Vector<S>& u,
@@ -60,7 +59,7 @@ void hand_over(Workspace<Space, S>& w, int k, const typename Space::template Vec
   add_couple(w, k, cross(u, force), body.T);
 }
 
-/// How body k turns along the direction, ground axes: a vector in space, a number in a plane.
+/// Turn of body k along the direction, ground axes: a vector in space, a number in a plane.
 template <class Space, class S>
 auto turned_along(const Workspace<Space, S>& w, int k) {
   using Angular =
@@ -81,7 +80,7 @@ auto turned_along(const Workspace<Space, S>& w, int k) {
   return turn;
 }
 
-/// The value of x, which nothing moves; and what it changes by along the direction, as a value.
+/// x without its direction; and its change along the direction, as a value.
 template <class S>
 S value_alone(const S& x) {
   S still(0.0);
@@ -94,7 +93,7 @@ S change_alone(const S& x) {
   change.a = x.b[0];
   return change;
 }
-/// A number of no value and this derivative: value_of() of x.
+/// A number of no value whose derivative is value_of(x).
 template <class S>
 S as_change(const S& x) {
   S change(0.0);

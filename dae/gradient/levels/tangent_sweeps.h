@@ -1,7 +1,6 @@
 #pragma once
-// What a step back over a run evaluates at each of its stages, along one direction: compiled for
-// several x86-64 levels as the sweeps of a run are, and chosen when it is made. No call allocates;
-// one object serves one thread.
+// Evaluations at stages of a step back over a run, along one direction, compiled for several x86-64
+// levels. No call allocates; one object serves one thread.
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/model.h>
@@ -19,20 +18,20 @@ class TangentSweeps {
   /// Plain arrays of nv numbers, σ of m.
   struct Result {
     double *u, *du, *dpdot;
-    double *sigma, *dsigma;  ///< of the rows as they are swept
+    double *sigma, *dsigma;  ///< rows as they are swept
   };
   virtual ~TangentSweeps() = default;
   /// κ of (8) and β of (7) [1/s], zero until then.
   virtual void feed_back(double leak, double beta) = 0;
-  /// False where a joint has no inertia or a branch is weak. `besides`: what the derivative of the
-  /// second row has besides (m), of the rows as they are swept; null: zero. O(bodies + m)
+  /// False where a joint has no inertia or a branch is weak. `besides`: added to the second row's
+  /// derivative (m), by rows as they are swept; null: zero. O(bodies + m)
   virtual bool operator()(double t, const double* q, const double* p, const double* dq,
                           const double* dp, const Result& result,
                           const double* besides = nullptr) = 0;
 };
 
 /// Where the numbers of a mechanism's tables stand among the slopes, in this order:
-///   - of each body m, m c, J, in space 10, in a plane 4; gravity
+///   - of each body m, m c, J, 10 in space, 4 in a plane; gravity
 ///   - of each joint its place, in space a screw at the parent's origin (shift, turn), in a plane
 ///     the shift and the direction of a slide; stiffness, rest, damping, torque, friction; rotor
 ///   - of each loop x_A, x_B, and by j axes a_j, b_j, in body axes; 1/l₀, l or c, square of the
@@ -53,7 +52,6 @@ struct NumberPlaces {
   Eigen::Index joints = 0, loops = 0, springs = 0, sums = 0, wrenches = 0, bushings = 0, drives = 0,
                size = 0;
 };
-/// Of a model with so many loops.
 template <class Space>
 MOMENTA_INLINE NumberPlaces<Space> number_places(const Model<Space>& model, std::size_t loops) {
   using Places = NumberPlaces<Space>;
@@ -71,23 +69,23 @@ MOMENTA_INLINE NumberPlaces<Space> number_places(const Model<Space>& model, std:
   return at;
 }
 
-/// Derivatives by numbers of L* = T − V + σᵀΦ̇ and of σᵀΦ: number_slopes.h. Motions are read at
-/// once and swept later, several side by side; finish() has the sum of all.
+/// Derivatives by numbers of L* = T − V + σᵀΦ̇ and of σᵀΦ: number_slopes.h. Motions are read at once
+/// and swept later, several side by side.
 class NumberSweep {
  public:
-  /// Arrays of nv and m numbers at t [s]; of u, σ, dq, du, dσ those that are null are zero.
+  /// Arrays of nv and m numbers at t [s]; u, σ, dq, du, dσ may be null: zero.
   struct Motion {
     double t;
     const double *q, *u, *sigma, *dq, *du, *dsigma;
   };
   virtual ~NumberSweep() = default;
-  /// factor D ∂L*/∂number along (dq, du, dσ). O(bodies + m)
+  /// Adds factor D ∂L*/∂number along (dq, du, dσ). O(bodies + m)
   virtual void add(double factor, const Motion& at) = 0;
-  /// factor D ∂(σᵀΦ̇)/∂number alone. O(bodies + m)
+  /// Adds factor D ∂(σᵀΦ̇)/∂number alone. O(bodies + m)
   virtual void add_loop_rates(double factor, const Motion& at) = 0;
-  /// factor ∂(νᵀΦ)/∂number. O(bodies + m)
+  /// Adds factor ∂(νᵀΦ)/∂number. O(bodies + m)
   virtual void add_loops(double factor, double t, const double* q, const double* nu) = 0;
-  /// slopes += all that was added since the last call. O(numbers)
+  /// slopes += all since the last finish(). O(numbers)
   virtual void finish(double* slopes) = 0;
 };
 
@@ -100,8 +98,8 @@ class KineticSweep {
                      double* momenta) = 0;
 };
 
-/// All of one mechanism, by the level of best_level(); what they are made of stays where it is.
-/// `fade`: where pivots fade. @pre swept.plan.fits()
+/// Sweeps of one mechanism at best_level(); the arguments stay where they are. `fade`: share of its
+/// scale below which a pivot fades. @pre swept.plan.fits()
 template <class Tree, class Space>
 std::unique_ptr<TangentSweeps> make_tangent_sweeps(const Tree& tree, const SweptLoops<Space>& swept,
                                                    double fade, bool body_forces);

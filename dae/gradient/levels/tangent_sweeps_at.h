@@ -79,7 +79,7 @@ class TangentSweepsAt final : public TangentSweeps {
   RightSide<S> right_;
   int nv_, m_;
   std::vector<S> numbers_;  ///< u, ṗ, σ
-  std::vector<S> besides_;  ///< of the second row
+  std::vector<S> besides_;  ///< added to the second row
 };
 
 template <class Space, int Level>
@@ -116,7 +116,7 @@ class KineticSweepAt final : public KineticSweep {
   std::vector<Directions<1, Level>> p_;
 };
 
-/// The narrowest fronts that hold the plan's slots.
+/// Sweeps with the narrowest fronts that hold the plan's slots.
 template <int Level, class Space, class Tree>
 std::unique_ptr<TangentSweeps> tangent_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
                                                  double fade, bool body_forces) {
