@@ -2,9 +2,8 @@
 // All bodies as one. With R_K, r_K the pose of body K's frame, m_K, c_K its mass and centre of mass
 // and (p_l, p_a) = M_K Ω_K its own momentum about O_K, eq. (11),
 //
-//   m = Σ m_K                          m c = Σ m_K (r_K + R_K c_K)
-//   L = Σ R_K p_l                      H = Σ (R_K p_a + r_K × R_K p_l)     about the ground's
-//   origin
+//   m = Σ m_K             m c = Σ m_K (r_K + R_K c_K)
+//   L = Σ R_K p_l         H = Σ (R_K p_a + r_K × R_K p_l)     about the ground's origin
 //
 // Ω has the prescribed motion in it (23), so L = d/dt (m c) whatever drives do.
 

@@ -3,10 +3,11 @@
 // recursion for u̇ (acceleration_sweeps.h, planar_acceleration_sweeps.h) with all forces of the
 // scene.
 //
-//   A_K = 𝒯ⱽ A_L + E u̇ + c_K,  c_K: velocity products and prescribed accelerations       derivative
-//   of (23) F_K = M_K A_K + b_K − T_K + Σ 𝒯ᶠ F_child,  b_K = Ω_K × (M_K Ω_K) (17), (21) τ_K = Eᵀ
-//   F_K + I_r u̇
-// F_K is the whole wrench through joint K about O_K: the reaction T_r of (28) plus what acts along
+//   A_K = 𝒯ⱽ A_L + E u̇ + c_K                                  derivative of (23)
+//   F_K = M_K A_K + b_K − T_K + Σ 𝒯ᶠ F_child                  (17), (21)
+//   τ_K = Eᵀ F_K + I_r u̇
+//
+// with c_K the velocity products and prescribed accelerations, and b_K = Ω_K × (M_K Ω_K). F_K is the whole wrench through joint K about O_K: the reaction T_r of (28) plus what acts along
 // the joint.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>

@@ -1,7 +1,9 @@
 // Canonical frames in space. The transform from a parent's frame to a joint, (R, r), is written as
-//   Rz(γ)Tz(δ) Rx(α)Tx(a) Rz(θ)Tz(d)                     when the two z axes are inclined: a along
-//   their common normal Rz(γ)Tz(δ) Rx(α)Tx(a) Ry(β) Rz(θ)                    when they are parallel
-//   or nearly so: no far common normal
+//
+//   Rz(γ)Tz(δ) Rx(α)Tx(a) Rz(θ)Tz(d)      where the z axes are inclined: a along the common normal
+//   Rz(γ)Tz(δ) Rx(α)Tx(a) Ry(β) Rz(θ)     where they are parallel or nearly so: the common normal
+//                                         would be far away
+//
 // The frame of a body on a joint about or along z may be turned and shifted along z; that freedom
 // makes γ = δ = 0 for its first child. Spherical and free bodies keep the scene's axes: their
 // quaternion is the scene's.

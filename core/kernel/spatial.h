@@ -42,8 +42,7 @@ struct Spatial : SpatialAlgebra {
     Vec3<S> origin;  ///< [m]
   };
 
-  // --- one screw about axis X: turn (c, s), shift t
-  // -------------------------------------------------------------
+  // One screw about axis X: turn (c, s), shift t.
 
   template <int X, class S, class C>
   static void motion_outward(Motion<S>& m, const C& c, const C& s, const C& t) {
@@ -96,8 +95,7 @@ struct Spatial : SpatialAlgebra {
     }
   }
 
-  // --- the whole edge
-  // ------------------------------------------------------------------------------------------
+  // The whole edge.
 
   /// The constant screws outward, of a motion and of a direction. Constants: EdgeConstants, or
   /// several side by side (BranchLink).
