@@ -1,5 +1,5 @@
+#include <momenta/core/kernel/place_links.h>
 #include <momenta/core/kernel/points.h>
-#include <momenta/core/kernel/pose_of.h>
 #include <momenta/core/poses.h>
 
 namespace momenta {

@@ -16,6 +16,7 @@
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/mechanism.h>
 
+#include <Eigen/Core>
 #include <vector>
 
 namespace momenta {
@@ -179,5 +180,13 @@ auto with_body_matrix(const Mechanism& mechanism, F&& f) {
   return f(std::make_unique<BodyMatrix<Spatial>>(
       mechanism, build_spatial_model(mechanism.tree(), mechanism.scene())));
 }
+
+// The blocks of (7) as whole matrices, for what asks for all of them at once: singular values,
+// ranks, users. After place() of the evaluation; O(n²) memory.
+
+/// M, nv × nv.
+Eigen::MatrixXd dense_mass(const Mechanism& mechanism, Evaluation<double>& e);
+/// Φ_q, m × nv.
+Eigen::MatrixXd dense_constraints(const Mechanism& mechanism, Evaluation<double>& e);
 
 }  // namespace momenta

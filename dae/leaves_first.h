@@ -1,4 +1,40 @@
 #pragma once
+// (7) factorised with every joint before the loops that hold it, the pivots of σ filtered: the
+// matrix of the joints' equations (factor/filtered_factor.h), or in deep trees that of the bodies'
+// (body_matrix.h) by fronts (factor/body_fronts.h).
+
+#include <momenta/dae/mechanism.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace momenta {
+
+class LeavesFirstMatrix {
+ public:
+  virtual ~LeavesFirstMatrix() = default;
+
+  /// Factorises at (t, q), where `e` is placed. `compliance`: E (m), with which no row fades; null:
+  /// 0. `fade`: how weak a pivot may be relative to its group's scale. False where a pivot of u, at
+  /// place singular_joint(), is not positive or a number is not finite. No allocation.
+  virtual bool factor(Evaluation<double>& e, double t, const double* q, const double* compliance,
+                      double fade) = 0;
+  virtual void solve(double* x) = 0;  ///< x (nv + m) ← A⁻¹ x
+  /// Pivot w of each row (m) in the last factor(), and where it fades; 0: it does not.
+  virtual const std::vector<double>& pivots() const = 0;
+  virtual const std::vector<double>& fading() const = 0;
+  /// Values of Φ_q there, in the order of Mechanism::constraint_pattern().
+  virtual const double* constraint() = 0;
+  virtual int singular_joint() const = 0;
+};
+
+std::unique_ptr<LeavesFirstMatrix> joint_matrix(const Mechanism& mechanism);
+std::unique_ptr<LeavesFirstMatrix> front_matrix(const Mechanism& mechanism);
+/// The matrix that Mechanism::solved_by_bodies() asks for.
+std::unique_ptr<LeavesFirstMatrix> leaves_first_matrix(const Mechanism& mechanism);
+
 // Error of eliminating every joint before the loops that hold it. Where a joint moves next to no
 // mass m, a row of its loop has a pivot of 1/m, and the rows that close after it have what the
 // product of that one leaves,
@@ -21,14 +57,6 @@
 // pose rows fade by half, whatever the masses are: so the least ω of three poses counts, the closed
 // start and two that motions lead to from there. ω at a pose is the largest of a few motions, as
 // roundings of one may cancel. Source: Oettli, Prager, Numer. Math. 6 (1964) 405.
-
-#include <momenta/dae/mechanism.h>
-
-#include <functional>
-#include <optional>
-#include <vector>
-
-namespace momenta {
 
 /// The ω that a run at the tightest tolerances of use does not notice.
 inline constexpr double most_leaves_first_error = 1e-9;

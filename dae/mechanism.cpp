@@ -2,7 +2,6 @@
 #include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/leaves_first.h>
-#include <momenta/dae/leaves_first_matrix.h>
 #include <momenta/dae/loop/loop_equation.h>
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism_inside.h>

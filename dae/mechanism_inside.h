@@ -3,7 +3,7 @@
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/model.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 #include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/mechanism.h>

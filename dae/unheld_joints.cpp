@@ -1,5 +1,5 @@
+#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/dense/least_squares.h>
-#include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/unheld_joints.h>
 

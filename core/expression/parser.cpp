@@ -7,7 +7,6 @@
 
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/function_names.h>
-#include <momenta/core/expression/other_notation.h>
 #include <momenta/core/expression/parser.h>
 #include <momenta/core/expression/scanner.h>
 #include <momenta/core/expression/tape.h>

@@ -1,5 +1,5 @@
 #include <momenta/core/expression/expression.h>
-#include <momenta/core/expression/other_notation.h>
+#include <momenta/core/expression/function_names.h>
 #include <momenta/core/expression/scanner.h>
 #include <momenta/core/text/near_name.h>
 

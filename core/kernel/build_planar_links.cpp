@@ -1,5 +1,5 @@
 #include <momenta/core/kernel/child_order.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 // has at hand: no sine is taken twice.
 
 #include <momenta/core/kernel/forces.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 
 #include <cmath>
 

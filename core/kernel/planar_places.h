@@ -2,7 +2,7 @@
 // Records and places of bodies at (t, q), shared by both recursions in a plane.
 
 #include <momenta/core/kernel/general_joint.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 #include <momenta/core/kernel/sweeps.h>
 
 namespace momenta {

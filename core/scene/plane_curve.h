@@ -11,7 +11,7 @@
 // To the left of p' is J p' with J (x, y) = (−y, x).
 
 #include <momenta/core/expression/spline.h>
-#include <momenta/core/scene/curve_spec.h>
+#include <momenta/core/scene/loop_spec.h>
 
 #include <array>
 #include <optional>

@@ -1,12 +1,11 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
-#include <momenta/dae/assembly/ordered_ends.h>
 #include <momenta/dae/assembly/second_order.h>
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
+#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
-#include <momenta/dae/loop_word.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,28 @@
 #pragma once
+// Loops with their ends in one order. Equations of a loop are components in axes of its parent,
+//
+//   D_j = b_j · (x_A − x_B),     O_ij = a_i · b_j,
+//
+// and the same loop seen from its child has them in axes of the other body: the same where it is
+// closed, not on the way there. Newton's steps from an open guess then lead to another pose, next
+// to it, or in another assembly. So an assembly is made of loops whose parent is the ground or
+// stands before the child among the scene's bodies, and does not depend on which end of a loop is
+// written as its parent.
+
+#include <momenta/core/scene/scene.h>
+#include <momenta/dae/mechanism.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// The scene with the ends of its loops in that order; nothing where it is written so.
+/// Driven loops stay, and kinds whose ends cannot change places. O(bodies + loops)
+std::optional<Scene> with_ordered_ends(const Scene& scene);
+
 // Loops that a pose closes turned. Rows of axes a_i of the child and b_j of the parent say
 // a_i · b_j = 0, and that holds not only where the axes coincide, C = 1 with C_ij = a_i · b_j:
 //
@@ -21,15 +45,6 @@
 // which body is the parent, in a plane or in space): all are gone then, and the pose is taken that
 // moves the mass least (displacement_of_mass.h). Where they move it alike the axes of the ground
 // decide.
-
-#include <momenta/dae/mechanism.h>
-
-#include <Eigen/Geometry>
-#include <optional>
-#include <string>
-#include <vector>
-
-namespace momenta {
 
 /// A turned loop and its turn G.
 struct TurnedLoop {

@@ -2,7 +2,6 @@
 #include <momenta/core/scene/validate.h>
 #include <momenta/dae/cut/fold_rotors.h>
 #include <momenta/dae/cut/fold_welds.h>
-#include <momenta/dae/cut/merged_body.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

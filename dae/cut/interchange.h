@@ -3,7 +3,7 @@
 // says of coordinates that would go.
 
 #include <momenta/core/scene/turned_round.h>
-#include <momenta/dae/cut/body_motions.h>
+#include <momenta/dae/cut/relative_motion.h>
 
 #include <optional>
 #include <set>

@@ -1,9 +1,8 @@
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/cut/child_order.h>
 #include <momenta/dae/cut/cycles.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
-#include <momenta/dae/cut/root_order.h>
+#include <momenta/dae/cut/tree_order.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>

@@ -25,8 +25,8 @@ namespace momenta {
 struct Recut {
   std::vector<std::string> cut;     ///< joints that became loops, in the order of the scene
   std::vector<std::string> joined;  ///< loops that became joints
-  bool reordered = false;           ///< trees on the ground stand in another order (root_order.h)
-  bool children_reordered = false;  ///< so do children of bodies (child_order.h)
+  bool reordered = false;           ///< trees on the ground stand in another order (tree_order.h)
+  bool children_reordered = false;  ///< so do children of bodies (tree_order.h)
   CutCost before, after;
   Scene scene;  ///< with the remarks; the given one where nothing is gained
   /// Mechanism of `scene` with the algebra of the given one, else default options; null where

@@ -1,7 +1,7 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/effort/given_motion.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 
 #include <algorithm>
 #include <optional>

@@ -2,8 +2,8 @@
 #include <momenta/core/scene/toml/fields.h>
 #include <momenta/core/scene/toml/set_numbers.h>
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/equations/definitions.h>
 #include <momenta/dae/equations/equation_file.h>
+#include <momenta/dae/equations/equation_system.h>
 #include <momenta/dae/structure/assignment.h>
 
 #include <algorithm>

@@ -1,4 +1,31 @@
 #pragma once
+
+#include <momenta/core/expression/expression.h>
+#include <momenta/core/scene/location.h>
+#include <momenta/core/scene/toml/setting.h>
+#include <momenta/dae/structure/sigma_method.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace momenta {
+
+/// Whether a text is a file of equations and no scene: a line of it opens the table [dae]. O(size)
+inline bool holds_equations(std::string_view text) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = text.substr(begin, end - begin);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.starts_with("[dae]")) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
 // A file of equations F(t, y, y') = 0, read and checked.
 //
 //   [dae]
@@ -12,19 +39,6 @@
 //
 // An equation is two formulas (core/expression/expression.h) with = between, or one that is to be
 // zero, of t, variables, der() of variables and parameters.
-
-#include <momenta/core/expression/expression.h>
-#include <momenta/core/scene/location.h>
-#include <momenta/core/scene/toml/setting.h>
-#include <momenta/dae/structure/signature.h>
-
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-namespace momenta {
 
 struct EquationFile {
   struct Equation {

@@ -3,7 +3,7 @@
 #include <momenta/dae/fit/least_squares_search.h>
 #include <momenta/dae/fit/starts.h>
 #include <momenta/dae/fit/undetermined.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,15 +3,15 @@
 //
 //   min J(θ),   conditions kept,   from ≤ θ ≤ to,
 //
-// of a motion that is swept (swept_parts.h) or of a run (run_parts.h), by constrained_search.h. A
-// mechanism that does not close, or does not reach a pose, is no candidate: the step is cut.
+// of a motion that is swept (swept_parts.h) or of a run (motion_parts.h), by constrained_search.h.
+// A mechanism that does not close, or does not reach a pose, is no candidate: the step is cut.
 // Extremes are made smooth by bounded_function.h. The minimum is a local one; starts are drawn as
 // by fit().
 
 #include <momenta/dae/fit/constrained_search.h>
 #include <momenta/dae/fit/fit.h>
 #include <momenta/dae/fit/kept_conditions.h>
-#include <momenta/dae/fit/run_parts.h>
+#include <momenta/dae/fit/motion_parts.h>
 #include <momenta/dae/fit/swept_parts.h>
 
 #include <functional>

@@ -1,9 +1,10 @@
 #pragma once
 // Numbers of a motion as functions of parameters θ of the scene, with their derivatives: what
-// formulas of a motion are made of. A motion is swept (swept_parts.h) or run (run_parts.h).
+// formulas of a motion are made of. A motion is swept (swept_parts.h) or run (motion_parts.h).
 
 #include <momenta/dae/fit/motion_formula.h>
 #include <momenta/dae/fit/parametric_mechanism.h>
+#include <momenta/dae/gradient/gradient.h>
 
 #include <string>
 #include <vector>
@@ -76,6 +77,30 @@ class MotionFunction {
   std::vector<MotionPart> parts_;
   std::vector<std::size_t> places_;
   std::unique_ptr<SmoothFormula> outer_;
+};
+
+// Parts of a run: last(g), integral(g) = ∫ g dt and mean(g), with the exact derivatives of the
+// run's own steps (dae/gradient/gradient.h). A run takes its largest and smallest values at times
+// that these derivatives do not tell: max and min are refused.
+
+/// Numbers of a run, by θ.
+class RunParts final : public MotionParts {
+ public:
+  /// `scene`: text of the family's scene. A fixed step in `settings` makes the function smooth.
+  RunParts(const ParametricMechanism& family, Eigen::VectorXd sizes, SceneText scene,
+           RunSettings settings);
+  std::size_t add(const MotionPart& part) override;
+  /// Cost: that of gradient(), for each part
+  bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) override;
+
+  /// Remarks of the gradients, each once.
+  const std::vector<std::string>& remarks() const { return remarks_; }
+
+ private:
+  SceneText scene_;
+  RunSettings settings_;
+  std::vector<MotionPart> parts_;
+  std::vector<std::string> remarks_;
 };
 
 }  // namespace momenta

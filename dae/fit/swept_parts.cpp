@@ -3,7 +3,7 @@
 #include <momenta/dae/effort/motion_reactions.h>
 #include <momenta/dae/fit/swept_parts.h>
 #include <momenta/dae/fit/swept_poses.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 #include <momenta/dae/kinematics/transmission.h>
 
 #include <algorithm>

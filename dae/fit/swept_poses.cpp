@@ -1,8 +1,8 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/fit/swept_poses.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
-#include <momenta/dae/kinematics/idle_turns.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
+#include <momenta/dae/kinematics/turns.h>
 
 #include <algorithm>
 #include <cmath>

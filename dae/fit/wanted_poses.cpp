@@ -1,6 +1,6 @@
 #include <momenta/dae/fit/named_table.h>
 #include <momenta/dae/fit/wanted_poses.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 
 namespace momenta {
 

@@ -12,7 +12,7 @@
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/penalty.h>
-#include <momenta/dae/solver/second_order.h>
+#include <momenta/dae/solver/system.h>
 
 namespace momenta {
 namespace {

@@ -21,7 +21,7 @@
 // Source        Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH 1996.
 
 #include <momenta/dae/form/acceleration_form.h>
-#include <momenta/dae/kkt/maximal_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 
 namespace momenta {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/kkt/row_scales.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 namespace momenta {
 

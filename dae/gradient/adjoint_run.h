@@ -14,7 +14,7 @@
 // Derivatives.
 
 #include <momenta/dae/gradient/form_adjoint.h>
-#include <momenta/dae/gradient/functional_slopes.h>
+#include <momenta/dae/gradient/functional.h>
 #include <momenta/dae/gradient/recorded_run.h>
 #include <momenta/dae/solver/butcher_tableau.h>
 

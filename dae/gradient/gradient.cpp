@@ -8,7 +8,6 @@
 #include <momenta/dae/gradient/law_jumps.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_adjoint.h>
-#include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/gradient/tangent_system.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/form_runner.h>

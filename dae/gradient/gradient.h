@@ -5,7 +5,7 @@
 //
 // depends on parameters and start values θ. Forward: the run's own steps and stages are
 // differentiated (tangent_system.h, form_tangents.h), and the assembly of its start
-// (start_tangents.h): the gradient is that of the numbers a run computes, whatever their accuracy.
+// (start_adjoint.h): the gradient is that of the numbers a run computes, whatever their accuracy.
 // Adjoint: the same derivative, backwards over the steps of the run (adjoint_run.h; on momenta
 // stage_adjoint.h, on accelerations acceleration_adjoint.h); one sweep serves all θ. Derivation:
 // docs/theory/gradients.md.

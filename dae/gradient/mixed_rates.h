@@ -1,4 +1,29 @@
 #pragma once
+// The derivatives of ∂T/∂q, at constant q, and of p = M u along rates, for transposed derivatives
+// of p = M u: D_v T_q and M v at (q, u), by (8) in dual numbers of one direction, without forces
+// and σ.
+
+#include <momenta/core/scalar/power_series.h>
+#include <momenta/dae/gradient/levels/mixed_sweep.h>
+#include <momenta/dae/gradient/momentum_rows.h>
+#include <momenta/dae/mechanism.h>
+
+#include <memory>
+
+namespace momenta {
+
+/// One object serves one thread; no call allocates.
+class KineticRates {
+ public:
+  virtual ~KineticRates() = default;
+  /// D_v T_q and M v (nv each) at t [s], q, u along v (nv each). O(bodies)
+  virtual void along(double t, const double* q, const double* u, const double* v, double* rates,
+                     double* momenta) = 0;
+};
+
+/// @pre bodies, no quaternions
+std::unique_ptr<KineticRates> make_kinetic_rates(const Mechanism& mechanism);
+
 // The second derivatives of the augmented Lagrangian L* = T − V + σᵀΦ̇ in the transposed derivative
 // of (3), one of them along the motion. With P = L*_u = M u + Φ_qᵀσ, R = L*_q, both at σ = 0, and
 // D_c along the curve (q + u s, u + u̇ s, λ s, t + s),
@@ -21,14 +46,6 @@
 //
 // Polarised takes 3 evaluations of rows in dual numbers, a fraction of the time of series; swept a
 // fraction of that.
-
-#include <momenta/core/scalar/power_series.h>
-#include <momenta/dae/gradient/levels/mixed_sweep.h>
-#include <momenta/dae/gradient/momentum_rows.h>
-
-#include <memory>
-
-namespace momenta {
 
 class MixedRates {
  public:

@@ -40,8 +40,8 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/gradient/correction_adjoint.h>
 #include <momenta/dae/gradient/form_adjoint.h>
-#include <momenta/dae/gradient/kinetic_rates.h>
 #include <momenta/dae/gradient/line_losses.h>
+#include <momenta/dae/gradient/mixed_rates.h>
 #include <momenta/dae/gradient/momentum_rows.h>
 #include <momenta/dae/gradient/number_slopes.h>
 #include <momenta/dae/gradient/row_derivatives.h>

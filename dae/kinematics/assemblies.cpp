@@ -3,7 +3,7 @@
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/kinematics/assemblies.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 #include <momenta/dae/kinematics/homotopy.h>
 #include <momenta/dae/kinematics/loop_polynomials.h>
 #include <momenta/dae/kinematics/pose_space.h>

@@ -1,11 +1,5 @@
 #pragma once
-// A function Σ c_i q_i of the pose that is held while other coordinates move:
-//
-//   "O", "J.q2", "S.qx"   a coordinate, one of a free body or of a quaternion among them
-//   "S.wx"                the turn about the child's axis x: with ψ₀ the half of it at the start,
-//                         q_x cos ψ₀ − q_w sin ψ₀ = 0, in which the sign of the quaternion drops out
-//
-// The turn holds no rate: a child that turns back to its place comes back to its pose.
+// Coordinates that users name: "O", the only one of joint O, or the name of its column, "J.q2".
 
 #include <momenta/dae/mechanism.h>
 
@@ -15,6 +9,18 @@
 #include <vector>
 
 namespace momenta {
+
+/// Places in q and u. @throws SceneError with all names for an unknown one or a part of a
+/// quaternion. O(bodies)
+std::pair<int, int> coordinate_named(const Mechanism& mechanism, const std::string& name);
+
+// A function Σ c_i q_i of the pose that is held while other coordinates move:
+//
+//   "O", "J.q2", "S.qx"   a coordinate, one of a free body or of a quaternion among them
+//   "S.wx"                the turn about the child's axis x: with ψ₀ the half of it at the start,
+//                         q_x cos ψ₀ − q_w sin ψ₀ = 0, in which the sign of the quaternion drops out
+//
+// The turn holds no rate: a child that turns back to its place comes back to its pose.
 
 struct HeldCoordinate {
   std::vector<std::pair<int, double>> terms;  ///< places in q, and the c_i

@@ -1,4 +1,4 @@
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 #include <momenta/dae/kinematics/move_rows.h>
 
 #include <algorithm>

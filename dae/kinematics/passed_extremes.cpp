@@ -1,4 +1,3 @@
-#include <momenta/dae/kinematics/least_between.h>
 #include <momenta/dae/kinematics/passed_extremes.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/joint_places.h>
-#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/held_coordinate.h>
 #include <momenta/dae/kinematics/transmission.h>
 
 #include <algorithm>

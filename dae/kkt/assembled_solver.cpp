@@ -2,7 +2,7 @@
 // the staged sweeps, solve.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/kkt/assembled_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 
 #include <algorithm>
 

@@ -1,8 +1,63 @@
 #pragma once
-// Articulated inertias of both algebras as full matrices, 6 × 6 and 3 × 3, and back.
+// Cholesky factors of matrices of two to six rows, their size known to the compiler: plain loops
+// that it unrolls.
 
 #include <momenta/core/kernel/planar.h>
 #include <momenta/core/kernel/spatial.h>
+
+#include <cmath>
+
+namespace momenta::small {
+
+/// a = L Lᵀ from its lower triangle, in place, with 1/L_ii on the diagonal. False where a pivot is
+/// not above `least` times its diagonal entry.
+template <int n>
+bool cholesky(double (&a)[n][n], double least) {
+  for (int j = 0; j < n; ++j) {
+    double pivot = a[j][j];
+    const double bound = least * pivot;
+    for (int k = 0; k < j; ++k) pivot -= a[j][k] * a[j][k];
+    if (!(pivot > bound) || !(pivot < HUGE_VAL)) return false;
+    const double inverse = 1 / std::sqrt(pivot);
+    a[j][j] = inverse;
+    for (int i = j + 1; i < n; ++i) {
+      double sum = a[i][j];
+      for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
+      a[i][j] = sum * inverse;
+    }
+  }
+  return true;
+}
+
+/// x ← L⁻¹ x
+template <int n>
+void forward(const double (&l)[n][n], double* x) {
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < i; ++k) x[i] -= l[i][k] * x[k];
+    x[i] *= l[i][i];
+  }
+}
+/// The same for m columns, row by row.
+template <int n, int m>
+void forward(const double (&l)[n][n], double (*x)[m]) {
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < i; ++k)
+      for (int j = 0; j < m; ++j) x[i][j] -= l[i][k] * x[k][j];
+    for (int j = 0; j < m; ++j) x[i][j] *= l[i][i];
+  }
+}
+/// x ← L⁻ᵀ x
+template <int n>
+void backward(const double (&l)[n][n], double* x) {
+  for (int i = n; i-- > 0;) {
+    x[i] *= l[i][i];
+    for (int k = 0; k < i; ++k) x[k] -= l[i][k] * x[i];
+  }
+}
+
+}  // namespace momenta::small
+
+// Articulated inertias of both algebras as full matrices, 6 × 6 and 3 × 3, and back.
 
 namespace momenta {
 

@@ -1,6 +1,4 @@
-#include <momenta/dae/kkt/assembled_solver.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/kkt/sweep_solver.h>
 
 namespace momenta {
 

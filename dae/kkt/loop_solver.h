@@ -68,4 +68,16 @@ class LoopSolver {
 /// The solver of the mechanism's plan; needs loops. `e`: an evaluation of it, used as a workspace.
 std::unique_ptr<LoopSolver> make_loop_solver(const Mechanism& mechanism, Evaluation<double>& e);
 
+/// Solves with the mechanism's assembled matrix, dense or sparse.
+std::unique_ptr<LoopSolver> make_assembled_solver(const Mechanism& mechanism,
+                                                  Evaluation<double>& e);
+
+/// Solves by the sparse block matrix of all bodies' velocities and joints' multipliers
+/// (maximal_tree.h), loops by the small matrix they leave. O(bodies) for a tree, O(bodies m² + m³)
+/// with m loop equations. `e` as for make_loop_solver.
+std::unique_ptr<LoopSolver> make_maximal_solver(const Mechanism& mechanism, Evaluation<double>& e);
+
+/// Solves by the sweeps that carry loops. @pre mechanism.looped_sweeps() exists.
+std::unique_ptr<LoopSolver> make_sweep_solver(const Mechanism& mechanism, Evaluation<double>& e);
+
 }  // namespace momenta

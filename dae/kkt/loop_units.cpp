@@ -1,3 +1,4 @@
+#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/loop_units.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <set>
 
 namespace momenta {
+
 namespace {
 
 bool is_angle(const std::string& unit) {
@@ -102,6 +104,16 @@ LoopUnits::LoopUnits(const Mechanism& mechanism) {
       if (!of_equations.empty() && of_equations[static_cast<std::size_t>(i)] > 0)
         equations[i] = of_equations[static_cast<std::size_t>(i)];
     }
+}
+
+std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e) {
+  std::vector<double> constraint(mechanism.constraint_pattern().size()),
+      inertia(static_cast<std::size_t>(mechanism.nv())), scale(mechanism.row_groups().size());
+  e.constraint_entries(constraint.data());
+  e.mass_diagonal(inertia.data());
+  mechanism.axis_scale().of_groups(inertia, constraint, scale);
+  scale_idle_rows(scale);
+  return scale;
 }
 
 }  // namespace momenta

@@ -6,6 +6,7 @@
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace momenta {
 
@@ -22,5 +23,10 @@ struct LoopUnits {
   /// ground: a sum of k terms of size up to R is off by √k R ε.
   double rounding = 0;
 };
+
+/// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) at the configuration placed in `e`: the mean of Σ_j Φ_ij²
+/// / M_jj over its group, since a row may vanish in every entry; the natural one where a whole
+/// group of axis rows does; the largest for rows that nothing moves. [1/kg, or 1/(kg m²)]
+std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e);
 
 }  // namespace momenta

@@ -9,7 +9,7 @@
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/loop_matrix.h>
-#include <momenta/dae/kkt/maximal_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/maximal_tree.h>
 #include <momenta/dae/loop/loop_rows.h>
 

@@ -25,7 +25,6 @@
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/kkt/inertia_blocks.h>
-#include <momenta/dae/kkt/small_cholesky.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/multipliers.h>
-#include <momenta/dae/kkt/row_scales.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // the sweeps, on a pattern analysed once.
 
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/leaves_first_matrix.h>
+#include <momenta/dae/leaves_first.h>
 
 #include <algorithm>
 #include <cmath>

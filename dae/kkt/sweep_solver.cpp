@@ -3,8 +3,7 @@
 // some.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/kkt/assembled_solver.h>
-#include <momenta/dae/kkt/sweep_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>

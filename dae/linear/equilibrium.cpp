@@ -1,6 +1,6 @@
 #include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/formula.h>
-#include <momenta/dae/kkt/row_scales.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/downward_ways.h>
 #include <momenta/dae/linear/equilibrium.h>
 #include <momenta/dae/linear/local_pencil.h>

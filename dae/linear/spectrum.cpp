@@ -1,7 +1,7 @@
 #include <momenta/core/poses.h>
 #include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/kkt/least_norm.h>
-#include <momenta/dae/kkt/row_scales.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/lanczos_spectrum.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/reduced_spectrum.h>
@@ -22,7 +22,7 @@ constexpr int most_dense = 400;    // rates, or loop equations, for singular val
 constexpr int most_reduced = 300;  // up to which all modes are found
 constexpr int usual_count = 20;    // modes found of more
 
-/// Φ_q at the equilibrium in the units of kkt/row_scales.h: D^(−1/2) Φ_q diag(M)^(−1/2).
+/// Φ_q at the equilibrium in the units of kkt/loop_units.h: D^(−1/2) Φ_q diag(M)^(−1/2).
 struct LoopsThere {
   std::vector<double> values;  ///< by the mechanism's pattern
   VectorXd column;             ///< diag(M)^(−1/2), rates without inertia as the heaviest

@@ -1,9 +1,50 @@
 #pragma once
+// F and its total derivatives along a curve, and their derivatives by the curve's coefficients.
+//
+// Along y(t + s) = Σ y_k s^k, F(t + s) = Σ F_i s^i. Let A(s) = ∂F/∂y and B(s) = ∂F/∂y' along it. A
+// change δy_j s^j of y changes F by (A(s) + B(s) j/s) s^j δy_j, so
+//
+//   ∂F_i/∂y_j = A_(i−j) + j B_(i−j+1).
+//
+// A and B come from F evaluated on series with two directions, exact to rounding.
+
+#include <momenta/core/scalar/power_series.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// F(t, y, y') = 0 of `size` equations and unknowns, on curves: y, y' of one curve and F are arrays
+/// of `size`.
+struct CurveSystem {
+  int size = 0;
+  std::function<void(double t, const Jet* y, const Jet* ydot, Jet* r)> equations;
+};
+
+/// F_i, A_i and B_i of one curve, i = 0 … jet_order − 1.
+struct CurveBlocks {
+  /// `curve`: y_0 … y_(jet_order), one column each. O(size) evaluations of F
+  CurveBlocks(const CurveSystem& system, double t, const Eigen::MatrixXd& curve);
+
+  /// ∂F_i/∂y_j.
+  Eigen::MatrixXd by(int i, int j) const;
+
+  Eigen::MatrixXd f;                  ///< F_i, one column each
+  std::vector<Eigen::MatrixXd> a, b;  ///< A_i, B_i
+};
+
+/// Scales rows and columns, but for rounding, to a largest entry near 1 (Ruiz 2001). @return the
+/// column factors
+Eigen::VectorXd equilibrate(Eigen::MatrixXd& matrix, Eigen::VectorXd& right);
+
 // The differentiation index of F(t, y, y') = 0 at a consistent point, found from numbers.
 //
 // Along a solution y(t + s) = Σ y_k s^k, F(t + s) = Σ F_i s^i, the equations F_0 = … = F_ν = 0 are
 // F and its first ν total derivatives: the derivative array. It is a system in the unknowns (y_1,
-// …, y_(ν+1)), with y_1 = y', and has the matrix (measure/curve_blocks.h)
+// …, y_(ν+1)), with y_1 = y', and has the matrix (measure/derivative_array.h)
 //
 //   G_ν:  ∂F_i/∂y_j = A_(i−j) + j B_(i−j+1),        i = 0 … ν,  j = 1 … ν + 1
 //
@@ -16,13 +57,6 @@
 //
 // Source: Campbell, Gear, The index of general nonlinear DAEs, Numer. Math. 72 (1995); Brenan,
 // Campbell, Petzold, Numerical Solution of Initial-Value Problems in DAEs, chapter 2.
-
-#include <momenta/dae/measure/curve_blocks.h>
-
-#include <string>
-#include <vector>
-
-namespace momenta {
 
 /// A rank with the smallest singular value that counts and the largest that does not, relative to
 /// the largest (no less than rounding).

@@ -1,7 +1,7 @@
 #pragma once
 // A reference solution: a CSV with first column `t [s]` and others named like measured columns: the
 // trajectory with reactions, momenta M u, loop impulses ∫λ dt, and the work of drives and of forces
-// without potential (study/measured_columns.h).
+// without potential (study/force_columns.h).
 
 #include <filesystem>
 #include <limits>
@@ -59,7 +59,7 @@ class Reference {
     double impulse = none;   ///< ∫λ dt [N s, N m s]
     double work = none;      ///< [J]
   };
-  /// Error of a row at reference time `row`, without momenta (study/momentum_error.h) and columns
+  /// Error of a row at reference time `row`, without momenta (study/reference_errors.h) and columns
   /// that are not unique there (places, ascending). After bind().
   Error error(std::size_t row, const std::vector<double>& measured,
               const std::vector<std::size_t>& not_unique = {}) const;

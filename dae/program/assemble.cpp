@@ -1,7 +1,7 @@
 // `momenta assemble`: the start assembled from a scene's guess.
 
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/assembly/replaced_rates.h>
+#include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/joint_places.h>
 
 #include <cstdio>

@@ -2,7 +2,7 @@
 
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/rod_ends.h>
-#include <momenta/dae/assembly/replaced_rates.h>
+#include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/study/passed_limits.h>
@@ -13,7 +13,6 @@
 
 #include "answers.h"
 #include "checked.h"
-#include "cut_words.h"
 #include "loading.h"
 #include "reach_words.h"
 

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "answers.h"
-#include "cut_words.h"
 #include "loading.h"
+#include "reach_words.h"
 #include "results.h"
 
 namespace momenta::program {

@@ -8,12 +8,6 @@
 
 namespace momenta::program {
 
-/// Plane of a planar mechanism: its x and y in the scene, gravity along its −y.
-struct Plane {
-  Triple rpy{};  ///< axes of the plane in the scene's: Rz(y) Ry(p) Rx(r)
-  Triple from_plane(const Triple& v) const;
-};
-
 struct Family {
   const char* name;
   const char* what;  ///< a few words; N is the size

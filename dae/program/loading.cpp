@@ -1,8 +1,8 @@
 #include "loading.h"
 
 #include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/equations/holds_equations.h>
-#include <momenta/dae/study/measured_columns.h>
+#include <momenta/dae/equations/equation_file.h>
+#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/study/state_input.h>
 

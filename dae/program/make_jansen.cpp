@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "families.h"
-#include "planar_text.h"
+#include "scene_text.h"
 
 namespace momenta::program {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/text/utf8.h>
-#include <momenta/dae/assembly/replaced_rates.h>
+#include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>

@@ -2,9 +2,9 @@
 // Output of a verb, and its files in --out.
 
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/trajectory_file.h>
 #include <momenta/dae/study/journal.h>
 

@@ -1,11 +1,11 @@
-#include <momenta/dae/assembly/replaced_rates.h>
+#include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
-#include <momenta/dae/report/stiffness_in_words.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/passed_limits.h>

@@ -11,6 +11,12 @@ namespace momenta::program {
 
 using Triple = std::array<double, 3>;
 
+/// Plane of a planar mechanism: its x and y in the scene, gravity along its −y.
+struct Plane {
+  Triple rpy{};  ///< axes of the plane in the scene's: Rz(y) Ry(p) Rx(r)
+  Triple from_plane(const Triple& v) const;
+};
+
 /// Comment on top, name, gravity and [run].
 void print_head(const std::string& comment, const std::string& name, const Triple& gravity,
                 double end);
@@ -70,5 +76,15 @@ class Draw {
  private:
   std::mt19937_64 bits_;
 };
+
+// Joints of planar mechanisms, as text.
+
+/// A hinge about the plane's normal; `at` in axes of the parent, on the ground of the plane.
+JointText hinge(const std::string& name, const std::string& parent, const std::string& child,
+                const Triple& at, double angle, double rate, const Plane& plane);
+
+/// Prints a hinge that closes a loop between two bodies.
+void print_closing(const std::string& name, const std::string& parent, const std::string& child,
+                   const Triple& at_parent, const Triple& at_child);
 
 }  // namespace momenta::program

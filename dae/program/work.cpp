@@ -1,8 +1,8 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/report/order_table.h>
+#include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/measured_columns.h>
+#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>

@@ -4,7 +4,7 @@
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
-#include <momenta/dae/dense_blocks.h>
+#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>

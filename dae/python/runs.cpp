@@ -2,7 +2,7 @@
 // sample.
 
 #include <momenta/dae/study/drift_study.h>
-#include <momenta/dae/study/measured_columns.h>
+#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/work_study.h>
 

@@ -5,9 +5,9 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/index_report.h>
 #include <momenta/dae/report/page.h>
+#include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/state_report.h>
 #include <momenta/dae/report/still.h>
 #include <momenta/dae/report/sweep_report.h>

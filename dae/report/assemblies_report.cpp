@@ -1,9 +1,8 @@
 #include <momenta/dae/report/assemblies_report.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/figure.h>
+#include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>
-#include <momenta/dae/report/plain_page.h>
-#include <momenta/dae/report/template.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/text/number_text.h>
 

@@ -1,8 +1,7 @@
-#include <momenta/dae/report/chart_axis.h>
-#include <momenta/dae/report/chart_marker.h>
+#include <momenta/dae/report/chart.h>
 #include <momenta/dae/report/figure.h>
+#include <momenta/dae/report/sampled_curves.h>
 #include <momenta/dae/report/svg.h>
-#include <momenta/dae/report/thinning.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/run_label.h>
-#include <momenta/dae/study/ambiguity.h>
+#include <momenta/dae/study/departures.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include <momenta/dae/report/equation_report.h>
 #include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/plain_page.h>
-#include <momenta/dae/report/template.h>
+#include <momenta/dae/report/page.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <momenta/dae/report/json_writer.h>
+#include <momenta/dae/report/json.h>
 #include <momenta/dae/report/linear_report.h>
 #include <momenta/dae/text/number_text.h>
 

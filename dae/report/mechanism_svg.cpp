@@ -2,11 +2,7 @@
 // and loops, limits where there are few, names.
 
 #include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/figure_eye.h>
-#include <momenta/dae/report/figure_limits.h>
-#include <momenta/dae/report/figure_names.h>
 #include <momenta/dae/report/meshes.h>
-#include <momenta/dae/report/solid_faces.h>
 #include <momenta/dae/report/svg.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/text/number_text.h>

@@ -27,4 +27,11 @@ std::vector<std::string> take_meshes(Picture& picture, const std::string& scene_
 /// Coarsens meshes to `bytes`, if they take more.
 void coarsen_meshes(Picture& picture, std::size_t bytes);
 
+// Solids as faces, for figures: polygons in body axes, corners counter-clockwise seen from outside.
+
+using Face = std::vector<Eigen::Vector3d>;
+
+/// Six faces of a box, 14 sides about the axis of a round solid, triangles of a mesh. O(faces)
+std::vector<Face> faces_of(const Picture& picture, const Picture::Solid& solid);
+
 }  // namespace momenta

@@ -11,12 +11,53 @@
 #include <momenta/dae/report/move_report.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
-#include <momenta/dae/report/template.h>
 
 #include <algorithm>
 #include <sstream>
 
 namespace momenta {
+
+std::string filled(std::string_view page,
+                   const std::vector<std::pair<std::string_view, std::string>>& replacements) {
+  std::string text;
+  while (true) {
+    const auto open = page.find("{{");
+    text += page.substr(0, open);
+    if (open == std::string_view::npos) return text;
+    const auto close = page.find("}}", open);
+    const auto name = page.substr(open + 2, close - open - 2);
+    for (const auto& [key, value] : replacements)
+      if (key == name) text += value;
+    page.remove_prefix(close + 2);
+  }
+}
+
+std::string escape_html(std::string_view text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -202,6 +243,40 @@ std::string view_page(const StudyResult& study, const std::string& words) {
   data["timeline"] = Json::array();
   return page(study, "The mechanism", marked_up(words), "", data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+std::string section(const std::string& title, const std::string& inside) {
+  return "<section><h2>" + escape_html(title) + "</h2>" + inside + "</section>\n";
+}
+std::string preformatted(const std::string& text) {
+  return "<pre class=\"frame\" tabindex=\"0\">" + escape_html(text) + "</pre>";
+}
+std::string drawn(const std::string& svg) {
+  return "<figure class=\"frame\" tabindex=\"0\">" + svg + "</figure>";
+}
+
+std::string how_section(const Environment& environment, const std::string& command) {
+  const auto pair = [](const char* what, const std::string& value) {
+    return std::string("<dt>") + what + "</dt><dd>" + escape_html(value) + "</dd>";
+  };
+  std::string versions;
+  for (const auto& [name, version] : environment.versions)
+    versions += (versions.empty() ? "" : ", ") + name + " " + version;
+  return section("How it was made",
+                 "<dl>" + pair("Command", command) + pair("Versions", versions) +
+                     pair("Compiler", environment.compiler + ", " + environment.flags) +
+                     pair("Processor", environment.cpu) + pair("Date", environment.date) + "</dl>");
+}
+
+std::string plain_page(const std::string& title, const char* kind, const std::string& answer,
+                       const std::string& main) {
+  return filled(embedded::stress_html(), {{"title", escape_html(title)},
+                                          {"kind", kind},
+                                          {"about", kind},
+                                          {"answer", answer},
+                                          {"main", main},
+                                          {"page_css", std::string(embedded::page_css())},
+                                          {"stress_css", std::string(embedded::stress_css())}});
 }
 
 }  // namespace momenta

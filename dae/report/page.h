@@ -1,5 +1,5 @@
 #pragma once
-// index.html of a study: one file for offline use.
+// Text for the places in a page.
 
 #include <momenta/dae/effort/effort.h>
 #include <momenta/dae/fit/identification.h>
@@ -9,8 +9,21 @@
 #include <momenta/dae/study/run_result.h>
 
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace momenta {
+
+/// Replaces each {{name}} in one pass: braces in replacements are plain text. A name without
+/// replacement is removed.
+std::string filled(std::string_view page,
+                   const std::vector<std::pair<std::string_view, std::string>>& replacements);
+
+/// & < > " ' as entities.
+std::string escape_html(std::string_view text);
+
+// index.html of a study: one file for offline use.
 
 // Script, style and uPlot are inlined; the data are the JSON island `<script
 // type="application/json" id="study">`.
@@ -42,5 +55,19 @@ std::string least_page(const StudyResult&, const LeastResult&, double first);
 
 /// The runs of both, moving on top of each other, beside measurements.
 std::string identification_page(const StudyResult&, const Identification&);
+
+// Pages without script: a title, an answer, sections.
+
+/// A section under its title; `inside` is HTML.
+std::string section(const std::string& title, const std::string& inside);
+/// A table as printed.
+std::string preformatted(const std::string& text);
+/// A chart at its size; narrower windows scroll it.
+std::string drawn(const std::string& svg);
+/// Command, versions, compiler, processor and date.
+std::string how_section(const Environment& environment, const std::string& command);
+/// `kind`: one word beside the program's name; `answer` and `main` are HTML.
+std::string plain_page(const std::string& title, const char* kind, const std::string& answer,
+                       const std::string& main);
 
 }  // namespace momenta

@@ -5,8 +5,8 @@
 #include <momenta/dae/report/page_data.h>
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/report/run_label.h>
-#include <momenta/dae/report/thinning.h>
-#include <momenta/dae/study/ambiguity.h>
+#include <momenta/dae/report/sampled_curves.h>
+#include <momenta/dae/study/departures.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <algorithm>

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <tuple>
 
 namespace momenta {
+
 namespace {
 
 std::array<std::string, 5> details(const RunSettings& s) {
@@ -62,6 +64,90 @@ std::vector<std::size_t> runs_with_curves(const StudyResult& study) {
     if (study.drift_study || first[i] == i) drawn.push_back(i);
   }
   return drawn;
+}
+
+namespace {
+
+struct Preferred {
+  const char* form;
+  int colour;
+};
+/// Every form has its colour on all pages; beyond eight, later ones share it with a dash.
+constexpr std::array<Preferred, 16> preferred{{{"momentum", 0},
+                                               {"acceleration", 1},
+                                               {"momentum-stabilised", 2},
+                                               {"stabilised-index2", 3},
+                                               {"projected", 4},
+                                               {"baumgarte", 5},
+                                               {"momentum-index2", 6},
+                                               {"augmented-lagrangian", 7},
+                                               {"momentum-index1", 0},
+                                               {"acceleration-index1", 1},
+                                               {"partitioned", 2},
+                                               {"acceleration-index3", 3},
+                                               {"momentum-index3", 6},
+                                               {"acceleration-index2", 5},
+                                               {"augmented-lagrangian-canonical", 0},
+                                               {"maximal-coordinates", 7}}};
+
+const std::array<std::vector<double>, 6> dashes{
+    {{}, {9, 5}, {2, 4}, {12, 4, 2, 4}, {16, 6}, {2, 8}}};
+constexpr std::array<const char*, 6> markers{"circle",  "square", "triangle",
+                                             "diamond", "plus",   "star"};
+
+std::size_t rank(const std::string& form) {
+  const auto found = std::find_if(preferred.begin(), preferred.end(),
+                                  [&](const Preferred& p) { return form == p.form; });
+  return static_cast<std::size_t>(found - preferred.begin());
+}
+
+template <class List>
+void add_once(List& list, const std::string& name) {
+  if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+}
+
+}  // namespace
+
+std::vector<Sign> signs_of(const StudyResult& study) {
+  std::vector<std::string> forms, integrators;
+  for (const RunResult& run : study.runs) {
+    add_once(forms, run.settings.form);
+    add_once(integrators, run.settings.integrator);
+  }
+  std::stable_sort(forms.begin(), forms.end(),
+                   [](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  std::array<std::size_t, palette.size()> uses{};
+  std::map<std::string, std::pair<int, std::size_t>> colour_and_round;
+  for (const std::string& form : forms) {
+    const bool known = rank(form) < preferred.size();
+    auto colour = static_cast<std::size_t>(known ? preferred[rank(form)].colour : 0);
+    const auto least = std::min_element(uses.begin(), uses.end());
+    if (uses[colour] > 0 && (*least == 0 || !known))
+      colour = static_cast<std::size_t>(least - uses.begin());
+    colour_and_round[form] = {static_cast<int>(colour), uses[colour]++};
+  }
+  const auto ladder = ladders(study);
+  std::map<std::string, std::size_t> variants;
+  std::vector<Sign> signs(study.runs.size());
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    if (ladder[i] != i && !study.drift_study) {
+      signs[i] = signs[ladder[i]];
+      continue;
+    }
+    const RunSettings& s = study.runs[i].settings;
+    const std::size_t variant = variants[s.form + " " + s.integrator]++;
+    const auto [colour, round] = colour_and_round[s.form];
+    const auto marker = static_cast<std::size_t>(
+        std::find(integrators.begin(), integrators.end(), s.integrator) - integrators.begin());
+    signs[i] = {colour, dashes[(round + 2 * variant) % dashes.size()],
+                markers[marker % markers.size()]};
+  }
+  return signs;
+}
+
+Sign sign_in_turn(std::size_t i) {
+  return {static_cast<int>(i % palette.size()), dashes[i / palette.size() % dashes.size()],
+          "circle"};
 }
 
 }  // namespace momenta

@@ -1,9 +1,8 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
-#include <momenta/dae/report/plain_page.h>
+#include <momenta/dae/report/page.h>
 #include <momenta/dae/report/sample_report.h>
-#include <momenta/dae/report/template.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>

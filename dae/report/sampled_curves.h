@@ -1,9 +1,10 @@
 #pragma once
-// Curves through samples and films of sampled poses, for pages of poses and efforts.
+// Fewer points for a curve, with visible features kept.
 
 #include <momenta/dae/study/picture.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +12,15 @@
 #include <vector>
 
 namespace momenta {
+
+/// Indices (ascending, at most `limit` ≥ 8) of the points to draw of y over t on a logarithmic t
+/// axis: only t > 0 and finite y; all points if few; else of each of equal stretches of log t the
+/// first, the smallest and the largest |y|, and the very last point. Not logarithmic: any t, equal
+/// stretches of t, smallest and largest y.
+std::vector<std::size_t> thinned(const std::vector<double>& t, const std::vector<double>& y,
+                                 std::size_t limit, bool logarithmic = true);
+
+// Curves through samples and films of sampled poses, for pages of poses and efforts.
 
 /// Curves of one unit over the same samples.
 struct SampledCurves {

@@ -1,12 +1,11 @@
-#include <momenta/dae/report/chart_axis.h>
+#include <momenta/dae/report/chart.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
-#include <momenta/dae/report/plain_page.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/section_report.h>
-#include <momenta/dae/report/sign.h>
 #include <momenta/dae/report/svg.h>
 #include <momenta/dae/report/table.h>
-#include <momenta/dae/report/template.h>
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/text/number_text.h>
 

@@ -1,6 +1,6 @@
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/measure/rank.h>
-#include <momenta/dae/report/json_writer.h>
+#include <momenta/dae/report/json.h>
 #include <momenta/dae/report/state_report.h>
 
 #include <array>

@@ -1,5 +1,5 @@
+#include <momenta/dae/report/page.h>
 #include <momenta/dae/report/svg.h>
-#include <momenta/dae/report/template.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/trajectory_file.h>
 
 #ifdef MOMENTA_HDF5

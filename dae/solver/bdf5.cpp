@@ -6,7 +6,7 @@
 // steps it rises where E_{k+1} < E_k < E_{k−1}. The next step is h (2 E_j/(j + 1) +
 // 10⁻⁴)^(−1/(j+1)), taken if it is less, or more by a share that pays for a new matrix. At the
 // start order and step rise with each step until the error says otherwise. Multipliers are in no
-// norm. Long runs: local_share.h.
+// norm. Long runs: local_newton.h.
 //
 // Dense output: the polynomial through the newest values. Past singular poses: ode_restart.h.
 // Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in
@@ -15,7 +15,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/bdf_step.h>
 #include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/local_share.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/ode_restart.h>
 
 #include <algorithm>

@@ -30,8 +30,8 @@
 // Differential-Algebraic Equations, ch. 5; the filter: Shampine, Baca, Numer. Math. 43 (1984)
 // 171-183; Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8.
 
-#include <momenta/dae/solver/dae_newton.h>
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/past_values.h>
 
 #include <array>

@@ -15,9 +15,9 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/constrained_hamiltonian.h>
-#include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/output_cursor.h>
 
 #include <Eigen/Core>
 #include <cmath>

@@ -11,7 +11,6 @@
 // Equations I, II.4.
 
 #include <momenta/dae/solver/explicit_step.h>
-#include <momenta/dae/solver/first_step.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/step_control.h>
 #include <momenta/dae/solver/stopping.h>

@@ -10,10 +10,10 @@
 // Numerical Integration, II.1, VI.4, VIII.5, VIII.6.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/gauss_stages.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/output_cursor.h>
 
 #include <stdexcept>
 

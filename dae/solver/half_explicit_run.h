@@ -13,12 +13,11 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/aligned_array.h>
-#include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/half_explicit.h>
-#include <momenta/dae/solver/half_explicit_error.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/ode_restart.h>
+#include <momenta/dae/solver/output_cursor.h>
 #include <momenta/dae/solver/step_control.h>
 #include <momenta/dae/solver/stopping.h>
 

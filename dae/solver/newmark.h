@@ -18,10 +18,10 @@
 // matrix: P w + Φ_qᵀν = 0, Φ_q w = −Φ̇ (−Φ̈), P = M + hγ ∂F/∂v + h²β ∂F/∂q at κ = 1.
 // Scaling: Bottasso, Bauchau, Cardona, SIAM J. Sci. Comput. 29 (2007) 397-414.
 
-#include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/newton_matrix.h>
-#include <momenta/dae/solver/second_order.h>
+#include <momenta/dae/solver/output_cursor.h>
+#include <momenta/dae/solver/system.h>
 #include <momenta/dae/solver/weighted_norm.h>
 
 namespace momenta {

@@ -2,9 +2,9 @@
 // tolerance, algebraic equations with it. Index up to 3.
 //
 // Local error and its norm: radau5_error.h. Step: options.step, without error control, where given;
-// else radau5_control.h. Gauge reset: radau5_gauge.h. Newton's corrections that shrink no more are
+// else radau5_steps.h. Gauge reset: radau5_steps.h. Newton's corrections that shrink no more are
 // rounding where they leave the motion as it is. Dense output: the collocation cubic between steps;
-// a sample is a step of its own from the last step's start (radau5_look.h), or, early in a step of
+// a sample is a step of its own from the last step's start (radau5_steps.h), or, early in a step of
 // equations of higher index, from the start before; where its iteration does not converge, the
 // cubic. Variables of index 3 are of order 2 in either, and the cubic's do not have the errors of
 // velocities over the length of a step. Looking on counts nothing and changes nothing.
@@ -14,14 +14,12 @@
 // Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by RK Methods.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/ode_restart.h>
-#include <momenta/dae/solver/radau5_control.h>
+#include <momenta/dae/solver/output_cursor.h>
 #include <momenta/dae/solver/radau5_error.h>
-#include <momenta/dae/solver/radau5_gauge.h>
-#include <momenta/dae/solver/radau5_look.h>
-#include <momenta/dae/solver/structured_system.h>
+#include <momenta/dae/solver/radau5_steps.h>
+#include <momenta/dae/solver/system.h>
 
 #include <limits>
 #include <memory>

@@ -9,13 +9,13 @@
 // variable of index 2 by h (DaeSystem::weight); multipliers are in none.
 //
 // Error and estimate are of orders 5 and 3, so the estimate is held at 0.1 tol^(2/3). In long runs
-// each step has a share of the tolerance (local_share.h), the estimate its power 2/3. With gauge
+// each step has a share of the tolerance (local_newton.h), the estimate its power 2/3. With gauge
 // reset it is measured by what moves alone (gauge_symmetry.h). Source: Hairer, Wanner, Solving
 // Ordinary Differential Equations II, IV.8, VII.4.
 
 #include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/integration.h>
-#include <momenta/dae/solver/local_share.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/radau5_stages.h>
 #include <momenta/dae/solver/weighted_norm.h>
 

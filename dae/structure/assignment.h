@@ -1,7 +1,7 @@
 #pragma once
 // Equations assigned to variables.
 
-#include <momenta/dae/structure/signature.h>
+#include <momenta/dae/structure/sigma_method.h>
 
 #include <optional>
 #include <vector>

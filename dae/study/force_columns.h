@@ -9,9 +9,11 @@
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/measure/reactions.h>
+#include <momenta/dae/mechanism.h>
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace momenta {
@@ -51,5 +53,20 @@ class ForceColumns {
   std::vector<bool> unique_rows_;
   std::vector<double> efforts_, with_, without_;
 };
+
+// Columns that a reference may have: the trajectory's with reactions, and behind them
+//
+//   JOINT.p     M u [N m s, N s], the momentum without Φ_qᵀσ: that part is the gauge's
+//   LOOP.impulse1, …  ∫λ dt from the start, by row of Φ [N s, N m s]: of momentum forms
+//                     Δσ + ∫κσ dt, whatever the gauge
+//   work        of drives and of what has no potential, from the start [J]
+
+/// Names and units of M u (nv), in the order of u: "O.p [N m s]".
+std::vector<Column> momentum_columns(const Mechanism& mechanism);
+/// Names and units of ∫λ dt (m), by row of Φ: "B.impulse1 [N s]".
+std::vector<Column> impulse_columns(const Mechanism& mechanism);
+
+/// trajectory_columns() with reactions, M u, ∫λ dt and work, in this order.
+std::vector<std::string> measured_columns(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -9,9 +9,11 @@
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/measure/reference.h>
+#include <momenta/dae/study/force_columns.h>
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace momenta {
 
@@ -24,12 +26,41 @@ struct OwnReference {
 /// Joint coordinates, rates and multipliers λ at `count` equal intervals up to `end` [s], bound to
 /// measured_columns(). With `forces` also ∫λ dt, integrated beside q and u, where the loop
 /// equations are independent at the start; and efforts, reactions, momenta and work
-/// (own_reference_forces.h). `going_on` (may be empty) takes the time reached; false stops. @throws
+/// (own_reference.h). `going_on` (may be empty) takes the time reached; false stops. @throws
 /// std::runtime_error with one sentence without a solution.
 OwnReference own_reference(const Mechanism& mechanism, const Start& start, double end, int count,
                            const std::function<bool(double t)>& going_on = {}, bool forces = false);
 
 /// "quadruple precision: acceleration form …; two tolerances agree to 2e-17"
 std::string in_words(const OwnReference& own);
+
+// Columns of a reference beside q, u and λ: efforts of drives and reactions of joints, by Newton's
+// and Euler's equations with the u̇ and λ of quadruple precision at the state rounded to doubles; p
+// = M u; and the work of drives and of what has no potential, as what T + V has grown by. A run
+// integrates the power of the same forces, so that its work and this one share no formula.
+//
+// Values that redundant loops leave open at any time make no column, nor do loads out of the plane
+// of planar mechanisms, nor work where nothing can do any.
+
+class OwnReferenceForces {
+ public:
+  explicit OwnReferenceForces(const Mechanism& mechanism);
+
+  /// Adds the values at the next time; u̇ (nv), λ (m) of (3) there.
+  void add(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+           const Eigen::VectorXd& udot, const Eigen::VectorXd& lambda);
+  /// Appends the columns, and their values to each row, in order of add().
+  void append(std::vector<std::string>& columns, std::vector<std::vector<double>>& rows) const;
+
+ private:
+  const Mechanism& mechanism_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<LoopSolver> solver_;  ///< null without loops
+  ForceColumns forces_;
+  bool works_;
+  std::vector<std::string> columns_;
+  std::vector<std::vector<double>> rows_;
+  std::vector<double> momenta_;
+};
 
 }  // namespace momenta

@@ -28,4 +28,8 @@ class QuadMotion {
 /// 100 evaluations in doubles.
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism);
 
+/// The motion of a Lagrangian by its formulas, (3) and its projections by elimination with full
+/// pivoting: O((n + m)³) a call. Numbers in formulas are those of the scene, in doubles.
+std::unique_ptr<QuadMotion> make_quad_lagrangian(const Mechanism& mechanism);
+
 }  // namespace momenta

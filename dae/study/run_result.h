@@ -58,8 +58,8 @@ struct Series {
   std::vector<double> multiplier_error;
   /// λ of the form itself against that of (3), max |difference|/(1+|λ|); else empty.
   std::vector<double> multiplier_difference;
-  // Errors against a reference that has these columns (study/measured_columns.h); else empty.
-  std::vector<double> momentum_error;  ///< p without its gauge (study/momentum_error.h)
+  // Errors against a reference that has these columns (study/force_columns.h); else empty.
+  std::vector<double> momentum_error;  ///< p without its gauge (study/reference_errors.h)
   std::vector<double> impulse_error;   ///< ∫λ dt
   std::vector<double> effort_error;    ///< efforts of drives, where unique
   std::vector<double> reaction_error;  ///< reactions of joints, where unique

@@ -4,10 +4,9 @@
 // against λ of (3).
 
 #include <momenta/dae/measure/reference.h>
-#include <momenta/dae/study/measured_columns.h>
-#include <momenta/dae/study/momentum_error.h>
+#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/own_multipliers.h>
-#include <momenta/dae/study/reaction_errors.h>
+#include <momenta/dae/study/reference_errors.h>
 #include <momenta/dae/study/trajectory_row.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/dae/dense_blocks.h>
+#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/measure/rank.h>

@@ -1,6 +1,6 @@
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/ambiguity.h>
+#include <momenta/dae/study/departures.h>
 #include <momenta/dae/study/rank_at_start.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>

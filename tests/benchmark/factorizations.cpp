@@ -13,7 +13,7 @@
 #include <momenta/dae/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/kkt/row_scales.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <cmath>
 #include <cstdio>

@@ -5,8 +5,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/kkt/assembled_solver.h>
-#include <momenta/dae/kkt/sweep_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/Dense>

@@ -9,7 +9,6 @@
 #include <momenta/dae/gradient/recorded_run.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_adjoint.h>
-#include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/solver/butcher_tableau.h>
 #include <momenta/dae/solver/integrators.h>
 

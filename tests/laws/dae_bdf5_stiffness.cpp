@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/solver/bdf_step.h>
-#include <momenta/dae/solver/local_share.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
 

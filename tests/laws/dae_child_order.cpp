@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/child_order.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/cut/tree_order.h>
 #include <momenta/dae/sweeps/slots/loop_plan.h>
 
 #include <algorithm>

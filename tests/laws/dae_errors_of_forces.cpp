@@ -11,9 +11,9 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/measure/reactions.h>
-#include <momenta/dae/study/measured_columns.h>
-#include <momenta/dae/study/momentum_error.h>
+#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/reference_errors.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/report/part_file.h>
 #include <momenta/dae/solver/integrators.h>
 
 #include <array>

@@ -106,7 +106,7 @@ TEST(Radau5, HeavyCoupler) {
 
 // What the formula takes from an undamped oscillation adds up over its periods: an energy error
 // four times as large after four times as long, unless a step's share of the tolerance shrinks as
-// their number grows (local_share.h).
+// their number grows (local_newton.h).
 TEST(Radau5, EnergyOfAnOscillationOverManyPeriods) {
   Scene scene = four_bar();
   for (JointSpec& joint : scene.joints)

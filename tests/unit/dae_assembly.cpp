@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/assembly/replaced_rates.h>
+#include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/kkt/loop_rank.h>
 
 #include <Eigen/SVD>

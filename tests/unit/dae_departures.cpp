@@ -7,7 +7,6 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/study/ambiguity.h>
 #include <momenta/dae/study/departures.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/work_study.h>

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/scene.h>
+#include <momenta/dae/equations/equation_file.h>
 #include <momenta/dae/equations/equation_start.h>
-#include <momenta/dae/equations/holds_equations.h>
 #include <momenta/dae/equations/suite.h>
 
 #include <algorithm>

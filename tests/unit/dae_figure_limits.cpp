@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/figure_limits.h>
 #include <momenta/dae/study/motion.h>
 
 namespace momenta::dae_figure_limits {

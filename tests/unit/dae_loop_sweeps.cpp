@@ -12,8 +12,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/model.h>
-#include <momenta/dae/kkt/assembled_solver.h>
-#include <momenta/dae/kkt/sweep_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 
 #include <Eigen/Dense>
 

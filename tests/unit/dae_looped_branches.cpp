@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/dae/kkt/sweep_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 

@@ -11,7 +11,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/dense_blocks.h>
+#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/state_values.h>
 #include <momenta/dae/unheld_joints.h>

@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/kkt/assembled_solver.h>
-#include <momenta/dae/kkt/maximal_solver.h>
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <chrono>

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/page.h>
+#include <momenta/dae/report/part_file.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/motion.h>
 #include <unit/page/firefox.h>

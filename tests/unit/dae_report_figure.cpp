@@ -1,7 +1,7 @@
 // Figures for papers: well-formed, without script, and every point of a curve one of the data.
 #include <gtest/gtest.h>
 #include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/sign.h>
+#include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/svg.h>
 #include <unit/page/synthetic_study.h>
 

@@ -7,7 +7,6 @@
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/meshes.h>
 #include <momenta/dae/report/picture_data.h>
-#include <momenta/dae/report/solid_faces.h>
 #include <momenta/dae/report/still.h>
 #include <momenta/dae/study/motion.h>
 

@@ -4,7 +4,7 @@
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
-#include <momenta/dae/report/thinning.h>
+#include <momenta/dae/report/sampled_curves.h>
 #include <unit/page/synthetic_study.h>
 
 #include <nlohmann/json.hpp>

@@ -6,7 +6,7 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/newton_matrix.h>
-#include <momenta/dae/solver/second_order.h>
+#include <momenta/dae/solver/system.h>
 #include <momenta/dae/study/run_form.h>
 
 #include "equations/ensemble.h"

@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/measure/observed_order.h>
+#include <momenta/dae/measure/growth.h>
 #include <momenta/dae/report/advice.h>
-#include <momenta/dae/report/order_table.h>
+#include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/solver/radau_collocation.h>
-#include <momenta/dae/study/measured_columns.h>
+#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/quad_motion.h>
 #include <momenta/dae/study/run_form.h>

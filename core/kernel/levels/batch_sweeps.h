@@ -4,7 +4,7 @@
 // function would be linked in one version alone.
 
 #include <momenta/core/kernel/link.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 
 #include <cstddef>
 #include <memory>

@@ -4,7 +4,7 @@
 
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/level.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 
 #include <cstddef>
 #include <memory>

@@ -12,7 +12,7 @@
 // an element `attached_model` of the root.
 
 #include <momenta/core/scene/mjcf/mjcf_files.h>
-#include <momenta/core/scene/xml/remarks.h>
+#include <momenta/core/scene/xml/made_scene.h>
 
 namespace momenta::reading {
 

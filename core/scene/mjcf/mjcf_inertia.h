@@ -31,7 +31,7 @@ MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner);
 /// <inertial pos mass (diaginertia, orientation | fullinertia)>.
 MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles);
 
-/// A body after `boundmass`, `boundinertia` and `balanceinertia` (mjcf_masses.cpp).
+/// A body after `boundmass`, `boundinertia` and `balanceinertia` (mjcf_inertia.cpp).
 MjcfInertia bounded(const MjcfInertia& body, const MjcfSettings& settings);
 
 /// A <geom> with its defaults, by its `mass` or `density` (default 1000 kg/m³).

@@ -3,8 +3,8 @@
 // ones may be missing.
 
 #include <momenta/core/scene/mesh/mesh_mass.h>
-#include <momenta/core/scene/mjcf/mjcf_settings.h>
-#include <momenta/core/scene/xml/remarks.h>
+#include <momenta/core/scene/mjcf/mjcf_defaults.h>
+#include <momenta/core/scene/xml/made_scene.h>
 
 #include <filesystem>
 #include <map>

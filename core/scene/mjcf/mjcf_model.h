@@ -3,7 +3,6 @@
 
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
 #include <momenta/core/scene/mjcf/mjcf_meshes.h>
-#include <momenta/core/scene/mjcf/mjcf_settings.h>
 #include <momenta/core/scene/xml/made_scene.h>
 
 #include <map>
@@ -84,10 +83,10 @@ void add_spring_and_damper(const JointSpec& joint, double stiffness, double damp
 /// Computes stiffness and damping of joints with `springdamper`. After all bodies.
 void settle_spring_dampers(MjcfModel& model);
 
-/// `settotalmass`: scales masses and inertias (mjcf_masses.cpp). After all bodies.
+/// `settotalmass`: scales masses and inertias (mjcf_inertia.cpp). After all bodies.
 void scale_to_total_mass(MjcfModel& model);
 
-/// Adds the armature of ball and free joints to their bodies (mjcf_armature.cpp). After all bodies.
+/// Adds the armature of ball and free joints to their bodies (mjcf_joints.cpp). After all bodies.
 /// @throws SceneError for one that is no inertia
 void settle_ball_armatures(MjcfModel& model);
 

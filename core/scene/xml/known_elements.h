@@ -3,7 +3,7 @@
 // dropped without a remark. `taken`: read, refused or reported by the readers; `silent`: without
 // effect on motion; `told`: left out, with a remark.
 
-#include <momenta/core/scene/xml/remarks.h>
+#include <momenta/core/scene/xml/made_scene.h>
 #include <momenta/core/scene/xml/xml_node.h>
 
 #include <span>

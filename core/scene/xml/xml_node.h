@@ -1,12 +1,11 @@
 #pragma once
-// An XML element, read by type. Every complaint names the file, the line, the owner of the element
-// ("link 'arm'"), the attribute, what was found and what was expected.
+// XML as plain values with their lines. Only xml_node.cpp includes the parser, tinyxml2.
 
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/scene/xml/xml_values.h>
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +13,35 @@
 #include <vector>
 
 namespace momenta::reading {
+
+struct Attribute {
+  std::string name, text;
+};
+
+struct IncludedFile {
+  std::string name;
+  int number = 0;  ///< Location::file
+};
+
+/// One element: its attributes, its text without comments, and the elements in it.
+struct Element {
+  std::string name;
+  std::string text;
+  int line = 0;
+  std::shared_ptr<const IncludedFile> file;  ///< file of the element; null: the file that is read
+  std::vector<Attribute> attributes;
+  std::vector<Element> children;
+
+  /// The text of an attribute; null: none.
+  const std::string* find(std::string_view attribute) const;
+};
+
+/// The root element of a text, nested at most 200 deep. `file` only names it in messages. @throws
+/// SceneError for text that is no XML, or over 64 MiB
+Element parse_xml(std::string_view text, const std::string& file);
+
+// An XML element, read by type. Every complaint names the file, the line, the owner of the element
+// ("link 'arm'"), the attribute, what was found and what was expected.
 
 class Node {
  public:

@@ -4,7 +4,7 @@
 // allocates; one object serves one thread.
 
 #include <momenta/core/kernel/link.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <memory>

@@ -4,7 +4,7 @@
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/model.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/Core>
@@ -89,7 +89,7 @@ class NumberSweep {
   virtual void finish(double* slopes) = 0;
 };
 
-/// D_v T_q and M v, kinetic_rates.h.
+/// D_v T_q and M v (mixed_rates.h).
 class KineticSweep {
  public:
   virtual ~KineticSweep() = default;

@@ -4,7 +4,7 @@
 
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/link.h>
-#include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/kernel/planar_joint.h>
 #include <momenta/dae/loop/carried_rows.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/shared_points.h>
