@@ -11,8 +11,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Range along the motion.
 struct Extent {
   double least = std::numeric_limits<double>::infinity(), most = -least;

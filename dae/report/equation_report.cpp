@@ -10,8 +10,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 using structure::at;
 
 /// "(1) - 2·(3)'": a combination without its small parts.

@@ -49,7 +49,6 @@ std::string suite_csv(const SuiteResult& suite) {
 }
 
 nlohmann::ordered_json suite_json(const SuiteResult& suite, const Environment& environment) {
-  using Json = nlohmann::ordered_json;
   Json j;
   j["name"] = suite.name;
   j["complete"] = suite.complete;

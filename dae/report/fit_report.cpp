@@ -9,8 +9,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// "12 mm and 0.02 rad".
 std::string largest(const WantedErrors& e) {
   std::string text;

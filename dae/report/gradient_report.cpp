@@ -10,8 +10,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Differences that agree to so many digits are not mentioned.
 constexpr double enough_digits = 8;
 

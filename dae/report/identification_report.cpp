@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Json = nlohmann::ordered_json;
 
 /// "0.0019 rad and 0.02 rad/s": root mean squares by unit.
 std::string rms_in_words(const Identification& r, const MatrixXd& values) {

@@ -138,7 +138,6 @@ nlohmann::ordered_json levels_json(const IndexFound& found) {
 }
 
 nlohmann::ordered_json index_json(const IndexStudy& study) {
-  using Json = nlohmann::ordered_json;
   const auto rank_json = [](const RankFound& r, int of) {
     return Json{{"rank", r.rank},
                 {"of", of},

@@ -7,8 +7,6 @@
 
 namespace momenta {
 
-using Json = nlohmann::ordered_json;
-
 Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

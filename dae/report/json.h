@@ -10,18 +10,20 @@
 
 namespace momenta {
 
+using Json = nlohmann::ordered_json;
+
 /// summary.json: scene form integrator gauge rtol atol step end_time status reason stopped_at
 /// project jacobian linear_solver kkt counters{…} time{…} drift{…} energy{…} error{…}
 /// environment{…}. Missing measurements are null.
-nlohmann::ordered_json summary_json(const RunResult&, const Environment&);
+Json summary_json(const RunResult&, const Environment&);
 
-nlohmann::ordered_json study_json(const StudyResult&);
+Json study_json(const StudyResult&);
 
 /// null unless finite: JSON has no NaN.
-nlohmann::ordered_json number_or_null(double);
+Json number_or_null(double);
 
 /// {cpu compiler flags build_type date versions{name: version}}.
-nlohmann::ordered_json environment_json(const Environment&);
+Json environment_json(const Environment&);
 
 // JSON written directly, in order: objects indented, arrays of numbers on one line, matrices one
 // row a line. Cost is that of the text.

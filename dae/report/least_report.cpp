@@ -9,11 +9,7 @@
 #include <numbers>
 
 namespace momenta {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-}  // namespace
+namespace {}  // namespace
 
 std::string least_in_words(const LeastResult& r) {
   std::string text = r.least + " is " + compact(r.after, 6) + "; ";

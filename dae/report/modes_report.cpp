@@ -10,8 +10,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string counted_modes(long n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? " mode" : " modes");
 }

@@ -13,7 +13,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 const Column& swept(const MoveResult& r) {

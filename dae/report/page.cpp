@@ -60,8 +60,6 @@ std::string escape_html(std::string_view text) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // "</script" in a JSON string would end the island; "<\/" is the same string in JSON. After "<!--"
 // an HTML parser would not find the end tag.
 std::string island(const Json& data) {

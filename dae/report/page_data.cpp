@@ -17,8 +17,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // Five digits: finer than a pixel of a decade, and half the bytes of seventeen.
 double drawn(double value) {
   std::array<char, 40> text{};

@@ -1,3 +1,4 @@
+#include <momenta/dae/report/json.h>
 #include <momenta/dae/report/picture_data.h>
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 
 namespace momenta {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double whole_short = 32767;
 

@@ -11,8 +11,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// "q05" for 0.05
 std::string quantile_name(double p) {
   const auto percent = static_cast<int>(std::lround(100 * p));

@@ -41,7 +41,6 @@ std::vector<std::size_t> thinned(const std::vector<double>& t, const std::vector
 
 void add_chart(nlohmann::ordered_json& charts, const std::vector<double>& x,
                const SampledCurves& sampled) {
-  using Json = nlohmann::ordered_json;
   constexpr std::size_t most = 24;
   const auto& curves = sampled.curves;
   if (curves.empty()) return;

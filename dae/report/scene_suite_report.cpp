@@ -10,8 +10,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string form_text(const RunSettings& s) {
   return s.form + (s.project ? ", projected" : "");
 }

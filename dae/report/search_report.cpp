@@ -9,11 +9,7 @@
 #include <numeric>
 
 namespace momenta {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<std::string> at_ends(const std::vector<FittedParameter>& parameters,
                                  const Eigen::VectorXd& found) {

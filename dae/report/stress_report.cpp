@@ -9,8 +9,6 @@
 namespace momenta {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string label(const Contestant& c) {
   return c.form + ", " + c.integrator;
 }

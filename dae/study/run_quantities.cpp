@@ -5,31 +5,25 @@
 namespace momenta {
 namespace {
 
-using Value = RunQuantity::Value;
-using R = RunResult;
-using S = RunSettings;
-
-/// The member of a member … of a run.
+/// A member of a run, or the member of a member …
 template <auto first, auto... rest>
-Value of(const auto& x) {
+RunQuantity::Value member_of(const auto& x) {
   if constexpr (sizeof...(rest) > 0)
-    return of<rest...>(x.*first);
+    return member_of<rest...>(x.*first);
   else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(x.*first)>, int>)
     return static_cast<long>(x.*first);
   else
     return x.*first;
 }
 template <auto... members>
-Value value(const RunResult& run) {
-  return of<members...>(run);
+RunQuantity::Value taken(const RunResult& run) {
+  return member_of<members...>(run);
 }
-/// NaN unless the drift grows like a power of t.
+/// Exponent of a growth; NaN unless the drift grows like a power of t.
 template <auto growth>
-Value power(const RunResult& run) {
+RunQuantity::Value power_of(const RunResult& run) {
   return (run.*growth).is_power() ? (run.*growth).exponent : not_measured;
 }
-
-constexpr const char* none = nullptr;
 
 }  // namespace
 
@@ -41,150 +35,155 @@ std::string RunQuantity::heading(const std::string& drift_unit) const {
 }
 
 const std::vector<RunQuantity>& run_quantities() {
+  using R = RunResult;
+  using S = RunSettings;
   // name, unit, in summary.json, column of study.csv, attribute in Python, value, meaning
   static const std::vector<RunQuantity> all{
-      {"scene", "", "/scene", true, true, value<&R::scene>, "name of the scene"},
-      {"form", "", "/form", true, true, value<&R::settings, &S::form>, "name of the form"},
-      {"integrator", "", "/integrator", true, true, value<&R::settings, &S::integrator>,
+      {"scene", "", "/scene", true, true, taken<&R::scene>, "name of the scene"},
+      {"form", "", "/form", true, true, taken<&R::settings, &S::form>, "name of the form"},
+      {"integrator", "", "/integrator", true, true, taken<&R::settings, &S::integrator>,
        "name of the integrator"},
-      {"gauge", "", "/gauge", true, true, value<&R::settings, &S::gauge>,
+      {"gauge", "", "/gauge", true, true, taken<&R::settings, &S::gauge>,
        "gauge of momentum forms"},
-      {"rtol", "", "/rtol", true, true, value<&R::settings, &S::rtol>, "relative tolerance"},
-      {"atol", "", "/atol", true, true, value<&R::settings, &S::atol>,
+      {"rtol", "", "/rtol", true, true, taken<&R::settings, &S::rtol>, "relative tolerance"},
+      {"atol", "", "/atol", true, true, taken<&R::settings, &S::atol>,
        "absolute tolerance, in scales of the unknowns"},
-      {"step", "s", "/step", true, true, value<&R::settings, &S::step>,
+      {"step", "s", "/step", true, true, taken<&R::settings, &S::step>,
        "fixed step [s]; 0: adaptive"},
-      {"end_time", "s", "/end_time", true, true, value<&R::settings, &S::end_time>,
+      {"end_time", "s", "/end_time", true, true, taken<&R::settings, &S::end_time>,
        "time asked for [s]"},
-      {"project", "", "/project", true, true, value<&R::settings, &S::project>,
+      {"project", "", "/project", true, true, taken<&R::settings, &S::project>,
        "whether positions were corrected after each step"},
-      {"baumgarte_alpha", "1/s", none, true, true, value<&R::settings, &S::baumgarte_alpha>,
+      {"baumgarte_alpha", "1/s", nullptr, true, true, taken<&R::settings, &S::baumgarte_alpha>,
        "gain of Phidot [1/s]"},
-      {"baumgarte_beta", "1/s", none, true, true, value<&R::settings, &S::baumgarte_beta>,
+      {"baumgarte_beta", "1/s", nullptr, true, true, taken<&R::settings, &S::baumgarte_beta>,
        "gain of Phi [1/s]"},
-      {"beta", "1/s", "/beta", true, true, value<&R::settings, &S::beta>,
+      {"beta", "1/s", "/beta", true, true, taken<&R::settings, &S::beta>,
        "position feedback of momentum forms [1/s]"},
-      {"penalty", "", "/penalty", true, true, value<&R::settings, &S::penalty>,
+      {"penalty", "", "/penalty", true, true, taken<&R::settings, &S::penalty>,
        "penalty of augmented Lagrangians, in effective masses of the loops"},
-      {"kkt", "", "/kkt", true, true, value<&R::settings, &S::kkt>,
+      {"kkt", "", "/kkt", true, true, taken<&R::settings, &S::kkt>,
        "how (7) was solved: sweeps, sparse, dense; else empty"},
-      {"jacobian", "", "/jacobian", true, true, value<&R::jacobian>,
+      {"jacobian", "", "/jacobian", true, true, taken<&R::jacobian>,
        "derivatives of implicit methods: dual numbers or difference quotient"},
-      {"linear_solver", "", "/linear_solver", true, true, value<&R::linear_solver>,
+      {"linear_solver", "", "/linear_solver", true, true, taken<&R::linear_solver>,
        "linear solver of implicit methods"},
-      {"status", "", "/status", true, true, value<&R::status>,
+      {"status", "", "/status", true, true, taken<&R::status>,
        "done, event (one of the scene's ended it), failed, time limit or came apart"},
-      {"stopped_at", "s", "/stopped_at", true, true, value<&R::stopped_at>,
+      {"stopped_at", "s", "/stopped_at", true, true, taken<&R::stopped_at>,
        "time at which it stopped [s]"},
-      {"reason", "", "/reason", true, true, value<&R::reason>, "one sentence when not done"},
-      {"departure", "", "/departure", false, true, value<&R::departure>,
+      {"reason", "", "/reason", true, true, taken<&R::reason>, "one sentence when not done"},
+      {"departure", "", "/departure", false, true, taken<&R::departure>,
        "one sentence where a run that reached its end is not to be relied on: how far the balance "
        "of energy or the rates of loops are off; else empty"},
-      {"stiff_from", "s", "/stiff_from", false, true, value<&R::stiff_from>,
+      {"stiff_from", "s", "/stiff_from", false, true, taken<&R::stiff_from>,
        "time since which stability limited the steps of an explicit method [s]"},
-      {"changed_at", "s", "/changed_at", false, true, value<&R::changed_at>,
+      {"changed_at", "s", "/changed_at", false, true, taken<&R::changed_at>,
        "time at which an implicit method took over [s]"},
       {"position_drift_max", "drift", "/drift/position_max", true, true,
-       value<&R::position_drift_max>, "largest |Phi| at the output times, in drift_unit"},
+       taken<&R::position_drift_max>, "largest |Phi| at the output times, in drift_unit"},
       {"velocity_drift_max", "drift/s", "/drift/velocity_max", true, true,
-       value<&R::velocity_drift_max>, "largest |Phidot| at the output times, in drift_unit/s"},
+       taken<&R::velocity_drift_max>, "largest |Phidot| at the output times, in drift_unit/s"},
       {"between_steps_max", "drift", "/drift/between_steps_max", true, true,
-       value<&R::between_steps_max>,
+       taken<&R::between_steps_max>,
        "largest |Phi| in the middle of a step, before corrections, in drift_unit"},
-      {"angle_drift_max", "rad", "/drift/angle_max", true, true, value<&R::angle_drift_max>,
+      {"angle_drift_max", "rad", "/drift/angle_max", true, true, taken<&R::angle_drift_max>,
        "largest |Phi| of the equations in rad, where others are in m [rad]"},
       {"angle_rate_drift_max", "rad/s", "/drift/angle_rate_max", true, true,
-       value<&R::angle_rate_drift_max>, "largest |Phidot| of the same equations [rad/s]"},
+       taken<&R::angle_rate_drift_max>, "largest |Phidot| of the same equations [rad/s]"},
       {"angle_between_steps_max", "rad", "/drift/angle_between_steps_max", true, true,
-       value<&R::angle_between_steps_max>,
+       taken<&R::angle_between_steps_max>,
        "largest |Phi| of the same equations in the middle of a step [rad]"},
-      {"position_exponent", "", none, true, false, value<&R::position_growth, &Growth::exponent>,
+      {"position_exponent", "", nullptr, true, false, taken<&R::position_growth, &Growth::exponent>,
        ""},
-      {"position_exponent_half_range", "", none, true, false,
-       value<&R::position_growth, &Growth::half_range>, ""},
-      {"velocity_exponent", "", none, true, false, value<&R::velocity_growth, &Growth::exponent>,
+      {"position_exponent_half_range", "", nullptr, true, false,
+       taken<&R::position_growth, &Growth::half_range>, ""},
+      {"velocity_exponent", "", nullptr, true, false, taken<&R::velocity_growth, &Growth::exponent>,
        ""},
-      {"velocity_exponent_half_range", "", none, true, false,
-       value<&R::velocity_growth, &Growth::half_range>, ""},
-      {"angle_exponent", "", none, true, false, value<&R::angle_growth, &Growth::exponent>, ""},
-      {"angle_exponent_half_range", "", none, true, false,
-       value<&R::angle_growth, &Growth::half_range>, ""},
-      {"angle_rate_exponent", "", none, true, false,
-       value<&R::angle_rate_growth, &Growth::exponent>, ""},
-      {"angle_rate_exponent_half_range", "", none, true, false,
-       value<&R::angle_rate_growth, &Growth::half_range>, ""},
-      {"position_exponent", "", "/drift/position_exponent", false, true, power<&R::position_growth>,
+      {"velocity_exponent_half_range", "", nullptr, true, false,
+       taken<&R::velocity_growth, &Growth::half_range>, ""},
+      {"angle_exponent", "", nullptr, true, false, taken<&R::angle_growth, &Growth::exponent>, ""},
+      {"angle_exponent_half_range", "", nullptr, true, false,
+       taken<&R::angle_growth, &Growth::half_range>, ""},
+      {"angle_rate_exponent", "", nullptr, true, false,
+       taken<&R::angle_rate_growth, &Growth::exponent>, ""},
+      {"angle_rate_exponent_half_range", "", nullptr, true, false,
+       taken<&R::angle_rate_growth, &Growth::half_range>, ""},
+      {"position_exponent", "", "/drift/position_exponent", false, true,
+       power_of<&R::position_growth>,
        "exponent of the position drift's growth; nan: no power of t"},
-      {"velocity_exponent", "", "/drift/velocity_exponent", false, true, power<&R::velocity_growth>,
+      {"velocity_exponent", "", "/drift/velocity_exponent", false, true,
+       power_of<&R::velocity_growth>,
        "exponent of the velocity drift's growth; nan: no power of t"},
-      {"angle_exponent", "", "/drift/angle_exponent", false, true, power<&R::angle_growth>,
+      {"angle_exponent", "", "/drift/angle_exponent", false, true, power_of<&R::angle_growth>,
        "exponent of the growth of the angles' drift; nan: no power of t"},
       {"angle_rate_exponent", "", "/drift/angle_rate_exponent", false, true,
-       power<&R::angle_rate_growth>,
+       power_of<&R::angle_rate_growth>,
        "exponent of the growth of the drift of angular rates; nan: no power of t"},
-      {"energy_error_max", "J", "/energy/error_max", true, true, value<&R::energy_error_max>,
+      {"energy_error_max", "J", "/energy/error_max", true, true, taken<&R::energy_error_max>,
        "largest |energy - energy(0)| [J]"},
-      {"energy_turned_over", "J", "/energy/turned_over", false, true, value<&R::energy_turned_over>,
+      {"energy_turned_over", "J", "/energy/turned_over", false, true, taken<&R::energy_turned_over>,
        "energy turned over during the run [J]"},
-      {"position_error_max", "", "/error/position_max", true, true, value<&R::position_error_max>,
+      {"position_error_max", "", "/error/position_max", true, true, taken<&R::position_error_max>,
        "error against the reference, max |err| / (1 + |ref|); nan without a reference"},
-      {"velocity_error_max", "", "/error/velocity_max", true, true, value<&R::velocity_error_max>,
+      {"velocity_error_max", "", "/error/velocity_max", true, true, taken<&R::velocity_error_max>,
        "error of rates; nan without a reference that has them"},
-      {"force_error_max", "", "/error/force_max", true, true, value<&R::force_error_max>,
+      {"force_error_max", "", "/error/force_max", true, true, taken<&R::force_error_max>,
        "error of lambda solved from (3); nan without a reference that has it"},
       {"multiplier_error_max", "", "/error/multiplier_max", true, true,
-       value<&R::multiplier_error_max>,
+       taken<&R::multiplier_error_max>,
        "error of lambda as the form itself has it; nan without a reference that has it"},
       {"multiplier_difference_max", "", "/multiplier_difference_max", true, true,
-       value<&R::multiplier_difference_max>,
+       taken<&R::multiplier_difference_max>,
        "lambda of the form itself against lambda solved from (3), max |difference| / (1 + "
        "|lambda|)"},
-      {"momentum_error_max", "", "/error/momentum_max", true, true, value<&R::momentum_error_max>,
+      {"momentum_error_max", "", "/error/momentum_max", true, true, taken<&R::momentum_error_max>,
        "error of p without its gauge; nan without a reference that has M u"},
-      {"impulse_error_max", "", "/error/impulse_max", true, true, value<&R::impulse_error_max>,
+      {"impulse_error_max", "", "/error/impulse_max", true, true, taken<&R::impulse_error_max>,
        "error of the loops' impulses, the integral of lambda; nan without a reference that has "
        "them"},
-      {"effort_error_max", "", "/error/effort_max", true, true, value<&R::effort_error_max>,
+      {"effort_error_max", "", "/error/effort_max", true, true, taken<&R::effort_error_max>,
        "error of the efforts of drives; nan without a reference that has them"},
-      {"reaction_error_max", "", "/error/reaction_max", true, true, value<&R::reaction_error_max>,
+      {"reaction_error_max", "", "/error/reaction_max", true, true, taken<&R::reaction_error_max>,
        "error of the reactions of joints, where unique; nan without a reference that has them"},
-      {"work_error_max", "", "/error/work_max", true, true, value<&R::work_error_max>,
+      {"work_error_max", "", "/error/work_max", true, true, taken<&R::work_error_max>,
        "error of the work of drives and of forces without potential; nan without a reference of "
        "it"},
-      {"steps", "", "/counters/steps", true, false, value<&R::counters, &Counters::steps>, ""},
-      {"rejected", "", "/counters/rejected", true, false, value<&R::counters, &Counters::rejected>,
+      {"steps", "", "/counters/steps", true, false, taken<&R::counters, &Counters::steps>, ""},
+      {"rejected", "", "/counters/rejected", true, false, taken<&R::counters, &Counters::rejected>,
        ""},
       {"evaluations", "", "/counters/evaluations", true, false,
-       value<&R::counters, &Counters::evaluations>, ""},
+       taken<&R::counters, &Counters::evaluations>, ""},
       {"jacobians", "", "/counters/jacobians", true, false,
-       value<&R::counters, &Counters::jacobians>, ""},
+       taken<&R::counters, &Counters::jacobians>, ""},
       {"factorizations", "", "/counters/factorizations", true, false,
-       value<&R::counters, &Counters::factorizations>, ""},
+       taken<&R::counters, &Counters::factorizations>, ""},
       {"newton_iterations", "", "/counters/newton_iterations", true, false,
-       value<&R::counters, &Counters::newton_iterations>, ""},
+       taken<&R::counters, &Counters::newton_iterations>, ""},
       {"ode_restarts", "", "/counters/ode_restarts", false, false,
-       value<&R::counters, &Counters::ode_restarts>, ""},
-      {"partitions", "", "/partitions", true, true, value<&R::partitions>,
+       taken<&R::counters, &Counters::ode_restarts>, ""},
+      {"partitions", "", "/partitions", true, true, taken<&R::partitions>,
        "how often partitioned chose its coordinates"},
-      {"cpu", "s", none, true, false, value<&R::cpu_s>, ""},
-      {"wall", "s", none, true, false, value<&R::wall_s>, ""},
-      {"cpu_s", "", "/time/cpu_s", false, true, value<&R::cpu_s>, "processor time [s]"},
-      {"wall_s", "", "/time/wall_s", false, true, value<&R::wall_s>, "time by the clock [s]"},
-      {"repeats", "", "/time/repeats", true, true, value<&R::repeats>, "timed repeats"},
-      {"untimed", "", "/time/untimed", false, true, value<&R::untimed>,
+      {"cpu", "s", nullptr, true, false, taken<&R::cpu_s>, ""},
+      {"wall", "s", nullptr, true, false, taken<&R::wall_s>, ""},
+      {"cpu_s", "", "/time/cpu_s", false, true, taken<&R::cpu_s>, "processor time [s]"},
+      {"wall_s", "", "/time/wall_s", false, true, taken<&R::wall_s>, "time by the clock [s]"},
+      {"repeats", "", "/time/repeats", true, true, taken<&R::repeats>, "timed repeats"},
+      {"untimed", "", "/time/untimed", false, true, taken<&R::untimed>,
        "why repeats gave no times; empty: they did"},
-      {"integrated", "", "/integrated", false, true, value<&R::integrated>,
+      {"integrated", "", "/integrated", false, true, taken<&R::integrated>,
        "what was integrated in place of the scene as written; empty: that"},
-      {"residue", "", "/residue", false, true, value<&R::residue>,
+      {"residue", "", "/residue", false, true, taken<&R::residue>,
        "what contradicting redundant equations leave open at the start; empty: nothing"},
-      {"weak_evaluations", "", "/weak_evaluations", false, true, value<&R::weak_evaluations>,
+      {"weak_evaluations", "", "/weak_evaluations", false, true, taken<&R::weak_evaluations>,
        "right-hand sides in which more equations faded than are redundant at the start"},
-      {"least_pivot", "", "/least_pivot", false, true, value<&R::least_pivot>,
+      {"least_pivot", "", "/least_pivot", false, true, taken<&R::least_pivot>,
        "least relative pivot of the loop equations; 0: a row faded"}};
   return all;
 }
 
 const std::vector<RunError>& run_errors() {
+  using R = RunResult;
   static const std::vector<RunError> all{
       {&Series::position_error, &R::position_error_max, "q", true},
       {&Series::velocity_error, &R::velocity_error_max, "u", true},
