@@ -90,22 +90,22 @@ void bind_runs(py::module_& module) {
       run.def_property_readonly(
           quantity.name, [value = quantity.value](const Run& r) { return value(r.result); },
           quantity.meaning);
-  const auto member = [&](const char* name, auto get, const char* doc) {
+  const auto property = [&](const char* name, auto get, const char* doc) {
     run.def_property_readonly(
         name, [get](const Run& r) { return get(r.result); }, doc);
   };
-  member(
+  property(
       "events", events,
       "events of the scene, in the order of time: dicts of name, t [s], direction (up or down) and "
       "the trajectory's columns there, by their names without units");
-  member(
+  property(
       "event_remarks", [](const RunResult& r) { return r.event_remarks; },
       "one sentence for each event whose formula had no value");
-  member("stops", stops,
-         "contacts at rigid stops, in the order of time: dicts of joint, limit, t [s], what "
-         "(impact, held, released), the rates before and after an impact, and its impulse");
-  member("counters", counters, "numbers of steps, evaluations, ... by name");
-  member(
+  property("stops", stops,
+           "contacts at rigid stops, in the order of time: dicts of joint, limit, t [s], what "
+           "(impact, held, released), the rates before and after an impact, and its impulse");
+  property("counters", counters, "numbers of steps, evaluations, ... by name");
+  property(
       "drift_unit", [](const RunResult& r) { return r.drift_unit; },
       "unit of the position drift: m, or rad where all loop equations are angles; empty without "
       "loops");

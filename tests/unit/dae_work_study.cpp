@@ -82,7 +82,7 @@ TEST(RadauCollocation, HasTheNodesAndWeightsOfRadau) {
 TEST(RadauCollocation, TakesStiffProblemsInLongSteps) {
   for (const double lambda : {-1.0, -1e3, -1e6, -1e9}) {
     std::vector<Quad> y{1.0, 1.0};
-    RadauCollocation<Quad> method(2);
+    OdeRadauCollocation<Quad> method(2);
     const auto rhs = [&](double t, const Quad* x, Quad* rate) {
       rate[0] = Quad(lambda) * (x[0] - cos(Quad(t))) - sin(Quad(t));
       rate[1] = -x[0] * x[1];
@@ -98,7 +98,7 @@ TEST(RadauCollocation, TakesStiffProblemsInLongSteps) {
 
 TEST(RadauCollocation, RefusesAStepTooLong) {
   std::vector<double> y{1.0};
-  RadauCollocation<double> method(1);
+  OdeRadauCollocation<double> method(1);
   const auto fast = [](double t, const double*, double* rate) {
     rate[0] = std::cos(40 * t);
     return true;
