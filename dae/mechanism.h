@@ -39,9 +39,9 @@ enum class CutChoice {
 
 /// Options that a scene does not contain.
 struct MechanismOptions {
-  Algebra algebra = Algebra::automatic;
-  KktChoice kkt = KktChoice::automatic;
-  CutChoice cut = CutChoice::automatic;
+  Algebra algebra = Algebra::automatic;  ///< which kernel
+  KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
+  CutChoice cut = CutChoice::automatic;  ///< what runs integrate
 };
 
 /// A column of trajectory.csv.
@@ -63,8 +63,8 @@ class Mechanism {
   Mechanism(const Mechanism&) = delete;
   Mechanism& operator=(const Mechanism&) = delete;
 
-  const Scene& scene() const { return scene_; }  ///< as given
-  const MechanismOptions& options() const { return options_; }
+  const Scene& scene() const { return scene_; }                 ///< as given
+  const MechanismOptions& options() const { return options_; }  ///< as given
   const Tree& tree() const { return tree_; }  ///< bodies in the order of the sweeps
   /// The tapes of the scene's Lagrangian. @pre it has one
   const LagrangianModel& lagrangian() const;
@@ -103,6 +103,7 @@ class Mechanism {
   const KktPattern& kkt_pattern() const;
   /// Nonzeros of Φ_q alone. O(length of all loops)
   const std::vector<KktPattern::Entry>& constraint_pattern() const;
+  /// The name of each row of Φ (m).
   const std::vector<RowName>& rows() const { return row_names_; }
   /// Group index of each row: rows of one loop and one kind (points, axes, distance or coupling)
   /// share a unit and so a scale.
@@ -111,11 +112,14 @@ class Mechanism {
   /// Whether each row (m) is one of velocities, A(q) u = b, without a row of positions behind it:
   /// its Φ is 0, its Φ_q is A, its Φ̇ is A u − b.
   const std::vector<bool>& nonholonomic() const { return nonholonomic_; }
+  /// Whether some row is nonholonomic.
   bool has_nonholonomic() const;
   /// Whether each row is an angle [rad]: rows of axes, couplers of angles alone. Others are lengths
   /// [m].
   const std::vector<bool>& angle_rows() const { return angle_rows_; }
+  /// Whether there are rows of lengths.
   bool has_lengths() const;
+  /// Whether there are rows of angles.
   bool has_angles() const;
 
   /// LoopWeights::least_scales by row (m) [1/kg]: size of a row of Φ_q M⁻¹ Φ_qᵀ below which it is
@@ -132,9 +136,13 @@ class Mechanism {
   /// Names and units of the columns of q (nq), u (nv), markers' positions and velocities, λ (m) by
   /// row of Φ, and efforts of joints' drives in the order of Tree::drives.
   std::vector<Column> coordinate_columns() const;
+  /// Columns of u (nv).
   std::vector<Column> rate_columns() const;
+  /// Columns of positions and velocities of markers.
   std::vector<Column> marker_columns() const;
+  /// Columns of λ (m), by row of Φ.
   std::vector<Column> multiplier_columns() const;
+  /// Columns of efforts of driven joints, in the order of Tree::drives.
   std::vector<Column> effort_columns() const;
 
   /// Lines of the plan, of core and of the loops.
@@ -187,6 +195,7 @@ class Mechanism {
   std::vector<double> least_scales_;
 };
 
+/// The evaluation in doubles.
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;

@@ -32,6 +32,7 @@
 
 namespace momenta {
 
+/// A mechanism with closed loops, and its dynamics at one state.
 class ClosedChain {
  public:
   /// @throws SceneError
@@ -39,6 +40,7 @@ class ClosedChain {
   ~ClosedChain();
   /// Movable. A moved-from object must not be used.
   ClosedChain(ClosedChain&&) noexcept;
+  /// As the move constructor.
   ClosedChain& operator=(ClosedChain&&) noexcept;
 
   /// The mechanism, which forms, runs and studies take. It lives as long as this object, also when

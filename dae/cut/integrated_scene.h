@@ -14,14 +14,14 @@ namespace momenta {
 
 /// A body that another one carries rigidly.
 struct CarriedBody {
-  std::string body;
+  std::string body;        ///< the rotor it carried
   std::string carrier;     ///< a body of the folded scene, "ground", or a rotor of `following`
   Eigen::Isometry3d pose;  ///< the body's frame in the carrier's
 };
 
 /// A revolute joint whose angle follows from a coordinate of another: q = ratio q' + offset.
 struct FollowingJoint {
-  std::string joint;
+  std::string joint;    ///< name
   std::string body;     ///< the rotor it carried
   std::string leader;   ///< a joint of the folded scene
   int coordinate = 0;   ///< coordinate of the leader
@@ -31,10 +31,12 @@ struct FollowingJoint {
   bool slides = false;  ///< the leader's coordinate is a displacement
 };
 
+/// A scene without the bodies and joints that cost an integration for nothing.
 struct FoldedScene {
-  Scene scene;
+  Scene scene;                            ///< without them
   std::vector<CarriedBody> carried;       ///< in the order of the given scene
   std::vector<FollowingJoint> following;  ///< likewise
+  /// Whether anything was folded.
   bool folds() const { return !carried.empty() || !following.empty(); }
 };
 
@@ -61,6 +63,7 @@ class IntegratedScene {
 
   /// The integrated mechanism; it lives as long as this object, or is the one written.
   const Mechanism& mechanism() const { return mechanism_ ? *mechanism_ : written_; }
+  /// The integrated mechanism's start.
   const Start& start() const { return mechanism_ ? start_ : written_start_; }
   /// Whether the scene differs from the one written.
   bool anew() const { return mechanism_ != nullptr; }

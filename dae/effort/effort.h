@@ -18,6 +18,7 @@
 
 namespace momenta {
 
+/// Request: efforts to compute, along a motion.
 struct EffortRequest {
   MotionSource motion;  ///< poses_alone: efforts hold each pose at rest
   /// Rates by coordinate ("O", "J.q2") or own name ("J.wx"). Empty: driven ones; without drives
@@ -29,6 +30,7 @@ struct EffortRequest {
   double within = 1e-6;  ///< tolerance of motion, in units of the scene, and of unheld forces
 };
 
+/// An actuator.
 struct Actuator {
   std::string name;   ///< "O"
   int rate = 0;       ///< place in u
@@ -37,6 +39,7 @@ struct Actuator {
   int helical = -1;   ///< place among joint_places() of a helical joint, else −1
 };
 
+/// The efforts at a time.
 struct EffortRow {
   double t = 0;            ///< [s]
   Eigen::VectorXd q;       ///< nq
@@ -50,18 +53,20 @@ struct EffortRow {
   Eigen::VectorXd thrust;
 };
 
+/// Efforts along a motion.
 struct EffortResult {
-  std::string scene;
+  std::string scene;                ///< its name
   std::vector<Column> coordinates;  ///< names of q
   std::vector<Column> rates;        ///< names of u
-  std::vector<Actuator> actuators;
-  std::vector<EffortRow> rows;  ///< by time
-  bool poses_alone = false;     ///< all rows are at rest
-  std::size_t given = 0;        ///< rates that the motion prescribes
-  int redundant = 0;            ///< most actuators beyond need
-  int unactuated = 0;           ///< most motions without actuator or effort
-  double gap = 0;               ///< largest deviation from given coordinates, in units
-  double missing = 0;           ///< largest force without actuator, relative to its terms
+  std::vector<Actuator> actuators;  ///< as named
+  std::vector<EffortRow> rows;      ///< by time
+  bool poses_alone = false;         ///< all rows are at rest
+  std::size_t given = 0;            ///< rates that the motion prescribes
+  int redundant = 0;                ///< most actuators beyond need
+  int unactuated = 0;               ///< most motions without actuator or effort
+  double gap = 0;                   ///< largest deviation from given coordinates, in units
+  double missing = 0;               ///< largest force without actuator, relative to its terms
+  /// Whether the result has thrusts.
   bool has_thrust() const;
 };
 

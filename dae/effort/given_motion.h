@@ -23,7 +23,9 @@
 
 namespace momenta {
 
+/// A motion given by rows of times and states.
 struct GivenMotion {
+  /// State given at one time.
   struct Row {
     double t = 0;          ///< [s]
     Eigen::VectorXd q;     ///< nq

@@ -18,13 +18,14 @@ namespace momenta {
 /// constant c, so a gauge can keep σ small. Without one σ grows like t under a mean load, and the
 /// local error with it.
 struct Gauge {
+  /// Rules of gauges.
   enum class Kind {
     none,   ///< nothing is done
     leak,   ///< σ decays at the rate κ all the time
     reset,  ///< σ = 0 after each step
     flip    ///< σ → −σ after each step
   };
-  Kind kind = Kind::none;
+  Kind kind = Kind::none;  ///< the rule
   /// Leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak).
   double kappa = 0;
   /// The text that parse_gauge reads.
@@ -34,6 +35,7 @@ struct Gauge {
 /// sentence.
 Gauge parse_gauge(const std::string& text);
 
+/// Options of a form.
 struct FormOptions {
   Gauge gauge;  ///< for momentum forms
   /// One position correction in the mass metric after each accepted step (one-step methods).

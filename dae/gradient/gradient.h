@@ -37,6 +37,7 @@ const std::vector<std::string>& gradient_modes();
 /// @throws std::invalid_argument with the names
 GradientMode gradient_mode(const std::string& name);
 
+/// Request for gradient().
 struct GradientRequest {
   std::string of;               ///< g, a formula of names of trajectory.csv; empty: `outputs` alone
   bool integral = false;        ///< ∫ g dt over the run; else g at its end
@@ -47,18 +48,19 @@ struct GradientRequest {
   /// forward alone.
   std::vector<std::string> outputs;
   std::vector<double> times;  ///< times for `outputs`, ascending from 0; the last ends the run [s]
-  GradientMode mode = GradientMode::automatic;
-  double max_cpu_seconds = 0;  ///< 0: none
+  GradientMode mode = GradientMode::automatic;  ///< forward, or one sweep back
+  double max_cpu_seconds = 0;                   ///< 0: none
   /// Called after each step at time t; false ends the run.
   std::function<bool(double t)> progress;
 };
 
+/// Result of gradient().
 struct GradientResult {
-  std::string scene;
-  RunSettings settings;  ///< as run, with the gains in force
-  std::string of;
-  bool integral = false;
-  double value = 0;                    ///< J
+  std::string scene;      ///< its name
+  RunSettings settings;   ///< as run, with the gains in force
+  std::string of;         ///< g, a formula of names of trajectory.csv; empty: `outputs` alone
+  bool integral = false;  ///< ∫ g dt over the run; else g at its end
+  double value = 0;       ///< J
   std::vector<RunVariable> variables;  ///< θ
   Eigen::VectorXd gradient;            ///< dJ/dθ, in the unit of J over that of θ
   /// Digits to which the formulas of sixth_order.h agree, by variable: where rows are differences
@@ -66,11 +68,11 @@ struct GradientResult {
   std::vector<double> digits;
   std::vector<std::string> without_effect;  ///< names of θ with less than 1e-10 of J
   std::vector<std::string> remarks;         ///< sentences on parts that are not smooth
-  bool adjoint = false;
-  long at_once = 0;   ///< adjoint: θ taken together, at no cost for each
-  long products = 0;  ///< adjoint: with transposed derivatives of the right-hand side
-  long steps = 0;
-  double end_time = 0;               ///< T [s]
+  bool adjoint = false;                     ///< by a sweep back
+  long at_once = 0;                         ///< adjoint: θ taken together, at no cost for each
+  long products = 0;    ///< adjoint: with transposed derivatives of the right-hand side
+  long steps = 0;       ///< of the run
+  double end_time = 0;  ///< T [s]
   std::vector<std::string> columns;  ///< "O.q", …: coordinates, then rates
   std::vector<double> times;         ///< times of `trajectory` [s]
   /// dq, du by θ at each time: columns × variables.

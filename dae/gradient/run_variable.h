@@ -10,18 +10,20 @@
 
 namespace momenta {
 
+/// A parameter or a start value by which a run is differentiated.
 struct RunVariable {
+  /// Kinds of variables.
   enum class Kind {
     parameter,  ///< a number of the scene's text
     position,   ///< a joint's, guess for the assembly
     rate        ///< a joint's, likewise
   };
-  Kind kind = Kind::parameter;
-  std::string name;  ///< "a", "body.crank.mass", "O.q", "O.u"
-  std::string unit;  ///< a start value's unit
-  int place = -1;    ///< a start value's place in q or u
-  double value = 0;  ///< value in the scene
-  double size = 1;   ///< > 0; scale of the steps of differences
+  Kind kind = Kind::parameter;  ///< its kind
+  std::string name;             ///< "a", "body.crank.mass", "O.q", "O.u"
+  std::string unit;             ///< a start value's unit
+  int place = -1;               ///< a start value's place in q or u
+  double value = 0;             ///< value in the scene
+  double size = 1;              ///< > 0; scale of the steps of differences
 };
 
 /// A scene as text, with parameters that can be changed.

@@ -29,7 +29,7 @@
 
 namespace momenta {
 
-/// Held coordinates and extent of the search.
+/// Assemblies found by a search.
 struct AssembliesRequest {
   std::vector<std::string> hold;  ///< coordinates "O" or "J.q2"
   int starts = 1000;              ///< drawn at random
@@ -46,11 +46,13 @@ struct PathCount {
   long singular = 0;  ///< multiple solutions, or points of curves
   long lost = 0;      ///< not followed to the end
   long real = 0;      ///< finite solutions that are assemblies
+  /// Whether the search found all assemblies.
   bool is_complete() const { return singular == 0 && lost == 0; }
   /// Divides by `copies`, how often each solution was found; a remainder is lost paths.
   void count_copies_once(long copies);
 };
 
+/// An assembly.
 struct FoundAssembly {
   Eigen::VectorXd q;       ///< nq, angles within half a turn of the scene's own pose
   int met = 0;             ///< number of starts that led here
@@ -59,11 +61,12 @@ struct FoundAssembly {
   double most_value = 0;   ///< largest; least_value / most_value is 0 where assemblies meet
 };
 
+/// What a search found.
 struct Assemblies {
   static constexpr double same = 1e-5;  ///< distance of equal assemblies [rad or lengths]
 
   std::vector<FoundAssembly> all;  ///< by `apart`: the scene's own first
-  int starts = 0;
+  int starts = 0;                  ///< how many there were
   int closed = 0;                  ///< starts that led to an assembly
   int turned = 0;                  ///< starts that led to a loop with turned axes
   std::optional<PathCount> paths;  ///< by homotopy; then there are no starts

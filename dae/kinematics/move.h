@@ -21,6 +21,7 @@
 
 namespace momenta {
 
+/// Request: swept coordinates and their range.
 struct MoveRequest {
   /// Coordinates "O" or "J.q2", and how far they go in proportion [rad or m].
   std::vector<std::pair<std::string, double>> sweep;
@@ -30,19 +31,21 @@ struct MoveRequest {
   double by = 0;  ///< step of the first from row to row [rad or m]; 0: a degree, or a 100th of a
                   ///< length
   bool singular_values = false;  ///< singular values of J at each row
-  long most_rows = 100000;
+  long most_rows = 100000;       ///< poses, at the most
 };
 
+/// A row of the result.
 struct MovedPose {
+  /// Why a pose is a row.
   enum class Kind {
     sample,       ///< s was asked for
     dead_point,   ///< s turns back
     change_point  ///< another curve crosses
   };
-  Kind kind = Kind::sample;
-  double s = 0;       ///< way of the first swept coordinate [rad or m]
-  int branch = 0;     ///< sign of det B(e_s); 0: at a dead point
-  Eigen::VectorXd q;  ///< nq
+  Kind kind = Kind::sample;  ///< why it is a row
+  double s = 0;              ///< way of the first swept coordinate [rad or m]
+  int branch = 0;            ///< sign of det B(e_s); 0: at a dead point
+  Eigen::VectorXd q;         ///< nq
   /// u (nv) with the first swept coordinate at unit rate: transmission ratios [rad/s or m/s]. Empty
   /// at dead and change points.
   Eigen::VectorXd u;
@@ -63,15 +66,17 @@ struct Reach {
   int turns_back = 0;  ///< rests relative to s
 };
 
+/// The poses found, and what the coordinates do along them.
 struct MoveResult {
+  /// How following the curve ended.
   enum class End {
     closed,   ///< back at the start, moving the same way
     reached,  ///< at the goal
     stopped   ///< before the goal
   };
-  End end = End::stopped;
-  std::string why;  ///< empty unless stopped
-  std::string scene;
+  End end = End::stopped;           ///< how it ended
+  std::string why;                  ///< empty unless stopped
+  std::string scene;                ///< its name
   std::vector<std::string> idle;    ///< balls whose idle turn is held
   std::vector<Column> coordinates;  ///< names of q
   std::vector<Column> rates;        ///< names of u
@@ -80,7 +85,7 @@ struct MoveResult {
   /// Extreme value along the curve, and its place.
   struct Extreme {
     double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: nowhere
-    double s = 0;
+    double s = 0;  ///< how far the first swept coordinate has come [rad or m]
   };
   /// Extremes at the output, located between poses.
   struct Passed {
@@ -89,13 +94,15 @@ struct MoveResult {
     Extreme least_force;    ///< joint force for a unit effort
     Extreme largest_force;  ///< infinite at most dead points
   };
-  Passed passed;
-  int output = -1;       ///< place of the output among `coordinates`; −1: none
-  int output_rate = -1;  ///< place of the output among `rates`; −1: none
-  double start = 0;      ///< first swept coordinate at s = 0
-  std::vector<MovedPose> poses;
-  std::vector<Reach> reach;  ///< reach by coordinate
+  Passed passed;                 ///< of the output
+  int output = -1;               ///< place of the output among `coordinates`; −1: none
+  int output_rate = -1;          ///< place of the output among `rates`; −1: none
+  double start = 0;              ///< first swept coordinate at s = 0
+  std::vector<MovedPose> poses;  ///< along the curve
+  std::vector<Reach> reach;      ///< reach by coordinate
+  /// Number of dead points among the poses.
   int dead_points() const { return count(MovedPose::Kind::dead_point); }
+  /// Number of change points among the poses.
   int change_points() const { return count(MovedPose::Kind::change_point); }
 
  private:

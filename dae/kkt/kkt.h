@@ -36,20 +36,22 @@ class Kkt {
   /// Rows of Φ whose pivots faded at the last factor(): redundant or singular at this pose. KLU
   /// cannot tell them, and lists none.
   const std::vector<int>& faded_rows() const { return faded_rows_; }
+  /// The number of faded rows.
   int faded() const { return static_cast<int>(faded_rows_.size()); }
   /// The least pivot at the last factor() of a row of Φ that has not faded, relative to the scale
   /// of its group; 1 where none is known.
   double weakest() const { return weakest_; }
+  /// Number of calls of factor() so far.
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
   int singular_joint() const { return singular_joint_; }
 
  protected:
-  std::vector<int> faded_rows_;
-  const double* compliance_ = nullptr;
-  double weakest_ = 1;
-  long factorizations_ = 0;
-  int singular_joint_ = -1;
+  std::vector<int> faded_rows_;         ///< faded_rows()
+  const double* compliance_ = nullptr;  ///< soften()
+  double weakest_ = 1;                  ///< weakest()
+  long factorizations_ = 0;             ///< factorizations()
+  int singular_joint_ = -1;             ///< singular_joint()
 };
 
 /// A solver of (7): dense or sparse by size, or as the mechanism's options say. A sparse one takes

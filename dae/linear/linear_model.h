@@ -41,10 +41,11 @@
 
 namespace momenta {
 
+/// Request: kind, inputs and outputs of a linear model.
 struct LinearRequest {
   /// Independent coordinates and rates alone, or all of them beside λ.
   enum class Kind { minimal, descriptor };
-  Kind kind = Kind::minimal;
+  Kind kind = Kind::minimal;  ///< which of the two
   /// Columns by name ("O.q"), by its part before the last point ("O"), or by group: efforts,
   /// drives. Empty: all.
   std::vector<std::string> inputs;
@@ -54,23 +55,24 @@ struct LinearRequest {
   std::vector<std::string> independent;
 };
 
+/// A linear model and the state it is of.
 struct LinearModel {
-  LinearRequest::Kind kind = LinearRequest::Kind::minimal;
-  std::string scene;
-  double t = 0;                       ///< [s]
-  std::vector<Column> coordinates;    ///< names of q
-  std::vector<Column> rates;          ///< names of u
-  Eigen::VectorXd q;                  ///< nq
-  Eigen::VectorXd u;                  ///< nv
-  Eigen::VectorXd udot;               ///< nv
-  std::vector<Column> states;         ///< names of x
-  std::vector<Column> inputs;         ///< names of w
-  std::vector<Column> outputs;        ///< names of y
-  Eigen::MatrixXd E;                  ///< states × states
-  Eigen::MatrixXd A;                  ///< states × states
-  Eigen::MatrixXd B;                  ///< states × inputs
-  Eigen::MatrixXd C;                  ///< outputs × states
-  Eigen::MatrixXd D;                  ///< outputs × inputs
+  LinearRequest::Kind kind = LinearRequest::Kind::minimal;  ///< as asked for
+  std::string scene;                                        ///< its name
+  double t = 0;                                             ///< [s]
+  std::vector<Column> coordinates;                          ///< names of q
+  std::vector<Column> rates;                                ///< names of u
+  Eigen::VectorXd q;                                        ///< nq
+  Eigen::VectorXd u;                                        ///< nv
+  Eigen::VectorXd udot;                                     ///< nv
+  std::vector<Column> states;                               ///< names of x
+  std::vector<Column> inputs;                               ///< names of w
+  std::vector<Column> outputs;                              ///< names of y
+  Eigen::MatrixXd E;                                        ///< states × states
+  Eigen::MatrixXd A;                                        ///< states × states
+  Eigen::MatrixXd B;                                        ///< states × inputs
+  Eigen::MatrixXd C;                                        ///< outputs × states
+  Eigen::MatrixXd D;                                        ///< outputs × inputs
   Eigen::VectorXcd poles;             ///< finite, by real part, the largest first [1/s]
   std::vector<std::string> left_out;  ///< dependent loop equations
   double kept = 0;                    ///< relative, least singular value of Φ_q; 0 without loops

@@ -23,6 +23,7 @@ inline double fitted_slope(const std::vector<double>& x, const std::vector<doubl
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
+/// A slope and the spread of slopes of parts.
 struct SlopeAndSpread {
   double slope;       ///< slope of all points
   double half_range;  ///< half the spread of slopes: all points and both halves
@@ -45,6 +46,7 @@ inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 /// Drift below this is rounding of Φ or Φ̇ itself, and shows no growth law [m, m/s].
 inline constexpr double rounding_level = 1e-13;
 
+/// A fitted power law running_max(t) ~ t^exponent.
 struct Growth {
   double exponent = not_measured;    ///< NaN: no power law
   double half_range = not_measured;  ///< half the spread of slopes: range and halves
@@ -68,6 +70,7 @@ Growth fit_growth(const std::vector<double>& t, const std::vector<double>& drift
 // r by least squares of the logarithms over a ladder of steps or tolerances. With error control the
 // number of steps stands for the inverse of their mean length.
 
+/// An observed order.
 struct ObservedOrder {
   double order = not_measured;       ///< r; NaN: fewer than three rungs
   double half_range = not_measured;  ///< half the spread of slopes: ladder and halves

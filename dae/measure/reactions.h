@@ -34,11 +34,13 @@ struct Transmitted {
   bool unique = true;      ///< false: redundant loop equations leave this wrench undetermined
 };
 
+/// The wrenches of all joints and loops.
 struct Reactions {
   std::vector<Transmitted> joints;  ///< order of joint_places()
   std::vector<Transmitted> loops;   ///< order of the scene
 };
 
+/// The wrenches along a motion: what they need of the mechanism is made once.
 class WrenchSweep {
  public:
   virtual ~WrenchSweep() = default;

@@ -47,6 +47,7 @@ class Reference {
   /// O(columns).
   std::size_t column_at(std::size_t place) const;
 
+  /// The error of a row against the reference.
   struct Error {
     /// Nothing is compared.
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -10,6 +10,7 @@
 
 namespace momenta {
 
+/// Options of an integrator.
 struct IntegrationOptions {
   double rtol = 1e-8;  ///< relative tolerance of the local error
   double atol = 1e-8;  ///< times the system's scale(i)
@@ -47,6 +48,7 @@ struct Counters {
   /// Steps of DAE methods that were taken as an ODE near singular poses; they are among `steps`.
   long ode_restarts = 0;
 
+  /// Adds the work of another integration.
   Counters& operator+=(const Counters& other) {
     steps += other.steps, rejected += other.rejected, evaluations += other.evaluations;
     jacobians += other.jacobians, factorizations += other.factorizations;
@@ -75,12 +77,13 @@ struct Observer {
   std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;
 };
 
+/// How an integration ended.
 struct IntegrationResult {
   bool done = false;      ///< the end was reached
   std::string reason;     ///< one sentence when not done: what failed, at which time, why
   double end_time = 0;    ///< [s]
   std::vector<double> y;  ///< state there
-  Counters counters;
+  Counters counters;      ///< of the whole integration
   /// Time [s] since which stability, not the tolerance, limits the steps of an explicit method;
   /// NaN: it does not.
   double stiff_from = std::numeric_limits<double>::quiet_NaN();

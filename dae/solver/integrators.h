@@ -10,19 +10,22 @@
 
 namespace momenta {
 
+/// One integrator.
 struct Integrator {
+  /// Kinds of systems.
   enum class Takes {
     ode,  ///< y' = f(t, y)
     dae,  ///< F(t, y, y') = 0
   };
+  /// Kinds of steps.
   enum class Step {
     adaptive,  ///< by the local error
     fixed      ///< IntegrationOptions::step
   };
 
-  std::string name;  ///< as in options and tables
-  Takes takes;
-  Step step;
+  std::string name;    ///< as in options and tables
+  Takes takes;         ///< ODEs or DAEs
+  Step step;           ///< adaptive or fixed
   bool multistep;      ///< keeps a history, which a gauge reset or flip would invalidate
   bool projects;       ///< states may be corrected onto the constraints after each step
   std::string method;  ///< description, one line
@@ -46,6 +49,7 @@ struct Integrator {
     return (takes == Takes::dae) == dae &&
            (forms.empty() || std::find(forms.begin(), forms.end(), wanted) != forms.end());
   }
+  /// Whether it is one of `closes`.
   bool closes_form(const std::string& form) const {
     return std::find(closes.begin(), closes.end(), form) != closes.end();
   }

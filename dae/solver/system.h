@@ -32,6 +32,7 @@ class OdeSystem {
   /// position correction of the size of the local error, after which the last stage may serve the
   /// next step.
   virtual bool after_step(double /*t*/, double* /*y*/, bool& /*changed*/) { return true; }
+  /// Whether after_step() does anything.
   virtual bool has_after_step() const { return false; }
 
   /// Begins a step at (t, y): takes the centre of σ, towards which faded rows go, so that within
@@ -99,6 +100,7 @@ class OdeSystem {
 /// While this object lives, evaluations of the system are for an observer: look_on().
 class Looking {
  public:
+  /// Calls look_on(true).
   explicit Looking(OdeSystem& system) : system_(system) { system_.look_on(true); }
   ~Looking() { system_.look_on(false); }
   Looking(const Looking&) = delete;
@@ -211,9 +213,11 @@ class DaeSystem {
 class LocalOfSecondOrder : public LocalJacobian {
  public:
   using LocalJacobian::evaluate;
+  /// The matrix at (t, y, ẏ). False where it has no value.
   virtual bool evaluate(double t, const double* y, const double* ydot, const double* c) = 0;
 };
 
+/// A DaeSystem of second order.
 class SecondOrder {
  public:
   virtual ~SecondOrder() = default;
@@ -229,7 +233,9 @@ class SecondOrder {
   // For projections and penalties:
   /// Φ (m) at (t, q), Φ̇ of v, and Φ̈ of v and v̇.
   virtual void constraints(double t, const double* q, double* phi) = 0;
+  /// Φ̇ (m).
   virtual void constraint_rates(double t, const double* q, const double* v, double* rate) = 0;
+  /// Φ̈ (m).
   virtual void constraint_accelerations(double t, const double* q, const double* v,
                                         const double* vdot, double* rate) = 0;
   /// 1/(penalty × effective mass) by row of Φ (m).
@@ -238,6 +244,7 @@ class SecondOrder {
 
 // Structure of a DaeSystem: a mixin.
 
+/// A DaeSystem that knows its structure.
 class StructuredSystem {
  public:
   virtual ~StructuredSystem() = default;

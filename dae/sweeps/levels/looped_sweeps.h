@@ -11,13 +11,13 @@ namespace momenta {
 
 /// States side by side: coordinate i of state s is at base[i * stride + s].
 struct LoopedStates {
-  const double* q;        ///< nq rows
-  const double* p;        ///< nv rows; of acceleration() u
-  double* u;              ///< nv rows; of acceleration() u̇
-  double* sigma;          ///< m rows; of acceleration() λ
-  double* pdot;           ///< nv rows; of acceleration() not used
-  std::ptrdiff_t stride;  ///< from one row to the next
-  std::size_t count;
+  const double* q;              ///< nq rows
+  const double* p;              ///< nv rows; of acceleration() u
+  double* u;                    ///< nv rows; of acceleration() u̇
+  double* sigma;                ///< m rows; of acceleration() λ
+  double* pdot;                 ///< nv rows; of acceleration() not used
+  std::ptrdiff_t stride;        ///< from one row to the next
+  std::size_t count;            ///< how many states
   const double* tau = nullptr;  ///< acceleration() only: nv rows; null: zero
   bool body_forces = false;     ///< RightSide::body_forces
 
@@ -64,7 +64,7 @@ class LoopedSweeps {
   /// faded ones.
   struct Pivots {
     double weakest = std::numeric_limits<double>::infinity();  ///< none: infinite
-    int faded = 0;
+    int faded = 0;                                             ///< how many
   };
   /// The pivots of the last solution of one state by momentum(), or by acceleration().
   virtual Pivots pivots(bool of_momentum) const = 0;
