@@ -52,7 +52,10 @@ void Departures::judge(RunResult& run) const {
 void Departures::judge_energy(RunResult& run) const {
   constexpr std::size_t enough = 20;  // samples, for the largest exchange of a tree
   if (mechanism_.m() == 0 && run.series.t.size() < enough) return;
-  const double scale = std::max(turned_over_, floor()), off = run.energy_error_max;
+  const bool at_rest = mechanism_.m() > 0 && fastest_ <= still_;
+  const double scale =
+                   std::max({turned_over_, floor(), at_rest ? way_at_rest * largest_energy_ : 0}),
+               off = run.energy_error_max;
   if (!(off > energy.told * scale)) return;
   const bool apart = off > energy.apart * scale;
   const double from = (apart ? beyond_apart_ : beyond_told_).from;

@@ -8,7 +8,9 @@
 //
 // Beyond the shares `told` the run is done, with a warning; beyond `apart` it came apart: its
 // motion is none of this mechanism. Energies below what the tolerance leaves of those in the state
-// count as none, as do rates that move a joint by less than a thousandth over the run.
+// count as none, as do rates that move a joint by less than a thousandth over the run, and without
+// faster ones energies below a thousandth of those in the state: what a stiff damper takes of rates
+// that the tolerance leaves open is no exchange.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/memory.h>

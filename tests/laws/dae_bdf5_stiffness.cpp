@@ -82,6 +82,17 @@ TEST(Bdf5, StartsBesideADamperOfAnySize) {
   for (const double damping : {1e5, 1e6, 1e7, 1e8, 1e9, 1e10}) {
     Scene scene = four_bar();
     rocker_of(scene).damping = damping;
+    // Powers of such a damper at rates within the tolerance are none of the motion's.
+    const Mechanism mechanism(scene);
+    for (const Start& start : equations::starts_of(mechanism, 8)) {
+      RunRequest request;
+      request.settings = default_settings(scene.run, "momentum-index2", "bdf5", 1e-8);
+      request.settings.gauge = "reset";
+      request.settings.end_time = 10;
+      request.settings.samples = 20;
+      const RunResult moved = run_form(mechanism, start, request);
+      EXPECT_TRUE(reliable(moved)) << damping << ": " << moved.reason << moved.departure;
+    }
     const RunResult r = run(scene, "momentum-index2", "bdf5", "reset", 1e-8, 10),
                     twin = run(scene, "momentum", "bdf", "leak", 1e-10, 10);
     ASSERT_EQ(r.status, "done") << damping << ": " << r.reason;
