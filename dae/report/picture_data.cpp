@@ -56,8 +56,8 @@ Json solids_of(const Picture& picture) {
                        five_digits(r.z())};
     if (v.colour) {
       char hex[8];
-      const auto part = [&](int i) {
-        return static_cast<unsigned>(std::lround(255 * (*v.colour)[i]));
+      const auto part = [&colour = *v.colour](int i) {
+        return static_cast<unsigned>(std::lround(255 * colour[i]));
       };
       std::snprintf(hex, sizeof hex, "#%02x%02x%02x", part(0) & 255U, part(1) & 255U,
                     part(2) & 255U);
