@@ -14,7 +14,7 @@ namespace momenta {
 namespace {
 
 using Eigen::VectorXd;
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double whole_turn = 2 * std::numbers::pi;
 constexpr double longest_step = 0.1, shortest_step = 1e-9;  // in units
 // Least |τ_s| at which s is given, not the distance: s does not turn back in a step of so little
 // bend.
@@ -102,7 +102,7 @@ class Follower {
       here_.tangent = -here_.tangent;
       here_.orientation = -here_.orientation;
     }
-    by_ = request_.by > 0 ? request_.by / unit_ : angles_[result_.swept] ? turn / 360 : 0.01;
+    by_ = request_.by > 0 ? request_.by / unit_ : angles_[result_.swept] ? whole_turn / 360 : 0.01;
     const bool dead = std::abs(here_.s_rate()) < at_rest;
     if (dead) here_.tangent[here_.tangent.size() - 1] = 0;
     beginning_ = here_;
@@ -144,7 +144,7 @@ class Follower {
     const auto sooner = [&](double other) {
       if ((other - s) * way > near && (other - next) * way < -near) next = other;
     };
-    if (angles_[result_.swept]) sooner(after(turn));
+    if (angles_[result_.swept]) sooner(after(whole_turn));
     if (std::isfinite(end)) sooner(end);
     if (std::abs(s) > near) sooner(0);
     return next;
@@ -340,7 +340,7 @@ class Follower {
         to.q.segment<4>(at) *= -1;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {
       double apart = to.q[i] - beginning_.q[i];
-      if (angles_[static_cast<std::size_t>(i)]) apart = std::remainder(apart, turn);
+      if (angles_[static_cast<std::size_t>(i)]) apart = std::remainder(apart, whole_turn);
       if (std::abs(apart) > same * std::max(1.0, std::abs(beginning_.q[i]))) return false;
     }
     return true;

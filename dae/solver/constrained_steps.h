@@ -41,8 +41,8 @@ class Convergence {
   Is after(double size) {
     if (size >= last_ && size <= rounding_) ++stalls_;
     if (size <= reached || stalls_ == patience) return Is::reached;
-    if (++count_ == most_iterations || !std::isfinite(size) || size > 1e6 * last_)
-      return Is::failed;
+    if (++count_ == most_iterations) return size <= rounding_ ? Is::reached : Is::failed;
+    if (!std::isfinite(size) || size > 1e6 * last_) return Is::failed;
     last_ = size;
     return Is::under_way;
   }
