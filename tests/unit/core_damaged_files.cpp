@@ -75,9 +75,9 @@ TEST(DamagedMeshes, AreMeshesOrSentences) {
     EXPECT_GT(reading::mass_of_shell(parse(whole, "m"), fault).measure, 0) << name;
     EXPECT_EQ(fault, "");
     int meshes = 0, sentences = 0;
-    each_damage(whole, 4000, [&](const std::string& bytes) {
+    each_damage(whole, 4000, [&, read = parse, what = name](const std::string& bytes) {
       try {
-        const Mesh mesh = parse(bytes, "m");
+        const Mesh mesh = read(bytes, "m");
         ++meshes;
         for (const auto& p : mesh.points) ASSERT_TRUE(p.allFinite());
         for (const auto& t : mesh.triangles)
@@ -87,7 +87,7 @@ TEST(DamagedMeshes, AreMeshesOrSentences) {
              {reading::mass_of_inside, reading::mass_by_pyramids, reading::mass_of_shell}) {
           std::string why;
           const reading::MeshMass mass = weigh(mesh, why);
-          EXPECT_TRUE(!why.empty() || mass.measure > 0 || !std::isfinite(mass.measure)) << name;
+          EXPECT_TRUE(!why.empty() || mass.measure > 0 || !std::isfinite(mass.measure)) << what;
         }
       } catch (const SceneError& error) {
         ++sentences;
