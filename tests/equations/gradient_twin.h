@@ -19,8 +19,7 @@ class QuadRun {
   /// `reset`: σ = 0 after each step; `leak` κ otherwise [1/s]; `dependent`: pivots below are those
   /// of rows that follow from others.
   QuadRun(const Mechanism& mechanism, bool reset, double leak, double dependent)
-      : mechanism_(mechanism),
-        e_(mechanism.evaluation<Quad>()),
+      : e_(mechanism.evaluation<Quad>()),
         reset_(reset),
         leak_(leak),
         dependent_(dependent),
@@ -143,7 +142,6 @@ class QuadRun {
     }
   }
 
-  const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<Quad>> e_;
   bool reset_;
   double leak_, dependent_;

@@ -83,7 +83,8 @@ TEST(SobolPoints, AreThoseOfTheTableInEveryDimension) {
 TEST(SobolPoints, AreNets) {
   const int m = 10;
   for (const bool shifted : {false, true})
-    for (const auto& [d, t] : {std::pair(2, 0), std::pair(3, 1), std::pair(4, 3)}) {
+    for (const auto& degrees : {std::pair(2, 0), std::pair(3, 1), std::pair(4, 3)}) {
+      const int d = degrees.first, t = degrees.second;
       const SobolSequence sequence(d);
       const Sample sample({Kind::sobol, 1u << m, 7, false}, static_cast<std::size_t>(d));
       std::vector<int> cut(static_cast<std::size_t>(d));

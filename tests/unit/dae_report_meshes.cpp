@@ -94,7 +94,7 @@ TEST_F(PageMeshes, OnesThatCannotBeReadAreTold) {
 TEST_F(PageMeshes, LimitsAreInThePicture) {
   const std::string limits = "limits = [-0.5, 1.25]\n";
   const auto json = picture_json(picture(read("l.toml", one_body + limits)));
-  EXPECT_EQ(json["bodies"][0]["limits"], nlohmann::json::array({-0.5, 1.25}));
+  EXPECT_EQ(json["bodies"][0]["limits"], nlohmann::ordered_json::array({-0.5, 1.25}));
   EXPECT_FALSE(picture_json(picture(read("n.toml", one_body)))["bodies"][0].contains("limits"));
 }
 
