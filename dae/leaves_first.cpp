@@ -3,6 +3,7 @@
 #include <momenta/dae/factor/body_fronts.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/factor/filtered_factor.h>
+#include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/leaves_first.h>
 
 #include <algorithm>

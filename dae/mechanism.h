@@ -195,6 +195,11 @@ class Mechanism {
   std::vector<double> least_scales_;
 };
 
+/// Word of messages for a constraint.
+inline const char* loop_word(const Mechanism& mechanism) {
+  return mechanism.scene().lagrangian ? "constraint" : "loop";
+}
+
 /// The evaluation in doubles.
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;

@@ -4,7 +4,7 @@
 // instantiated.
 
 #include <momenta/core/kernel/mass_matrix.h>
-#include <momenta/dae/joint_places.h>
+#include <momenta/dae/marker_points.h>
 #include <momenta/dae/sweep_rows.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 //
 //   f = −k s(l − rest) − c l̇,   Qᵢ = rᵢ f,   s(x) = x, V = ½ k (l − rest)²
 //
-// or, with a dead band, s and V of joint_stop.h. Stops at limits of l: joint_stop.h.
+// or, with a dead band, s and V of dead_band.h. Stops at limits of l: joint_stop.h.
 //
 // Q_i acts as opposite wrenches on the bodies on either side of joint i, along its axis: forces for
 // a slide, couples for an angle. Eᵀ of such a pair is Q_i at joint i and zero elsewhere, so these

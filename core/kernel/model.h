@@ -52,7 +52,7 @@ struct Model {
     int parent = -1, child = -1;
     Vector at_parent, at_child;
     double offset2 = 0, stiffness = 0, damping = 0, rest = 0;
-    double band = 0;  ///< joint_stop.h
+    double band = 0;  ///< dead_band.h
     JointStop stop;   ///< stop of its length
     bool limited = false;
   };
@@ -75,7 +75,7 @@ struct Model {
     };
     std::vector<Term> terms;
     double stiffness = 0, damping = 0, rest = 0;
-    double band = 0;  ///< joint_stop.h
+    double band = 0;  ///< dead_band.h
     JointStop stop;   ///< stop of the sum
   };
   /// Constant wrench. `torque` in space; in a plane only its normal component `normal_torque`.

@@ -1,5 +1,6 @@
 #pragma once
-// Dry friction of a joint by the force in its bearing (docs/theory/friction.md).
+// A joint of the tree of a scene: its frames, coordinates, forces along them, limits, and the
+// bearing that its dry friction comes from (docs/theory/friction.md).
 
 #include <momenta/core/scene/joint_kind.h>
 #include <momenta/core/scene/location.h>
@@ -30,8 +31,6 @@ struct BearingSpec {
   /// child, which carry the moment across the axis too. 0: one bearing, which carries none.
   double length = 0;
 };
-
-// A joint of the tree of a scene: its frames, coordinates, forces along them, and limits.
 
 class JointFormula;  // core/scene/joint_formula.h
 

@@ -1,5 +1,5 @@
 #pragma once
-// Curves in a plane of a body: paths of points, and outlines that touch.
+// A loop of a scene: a joint that closes it, curves in planes of bodies that do, or an equation.
 
 #include <momenta/core/scene/location.h>
 
@@ -27,8 +27,6 @@ struct CurveSpec {
   std::vector<Eigen::Vector3d> points;  ///< spline: from the point, in the plane [m]
   bool closed = false;                  ///< spline: from the last point back to the first
 };
-
-// A loop of a scene: a joint that closes it, or an equation.
 
 /// The kinds of loops, with their number of equations; the equations: LoopSpec.
 enum class LoopKind {

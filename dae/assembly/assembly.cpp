@@ -3,9 +3,9 @@
 #include <momenta/dae/assembly/second_order.h>
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/mechanism.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include <momenta/dae/assembly/quadratic_forms.h>
 #include <momenta/dae/assembly/second_order.h>
 #include <momenta/dae/dense/least_squares.h>
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/mechanism.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

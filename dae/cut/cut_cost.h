@@ -1,5 +1,5 @@
 #pragma once
-// Graph of the trees on the ground (tree_order.h), or of the children of a body (tree_order.h),
+// Graph of the trees on the ground, or of the children of a body (tree_order.h),
 // numbered in the order of the scene; a loop that ties two is an edge.
 
 #include <momenta/dae/mechanism.h>

@@ -30,7 +30,7 @@
 // about another axis; and whatever else a coupler ties (a crank, a slide): where its moment of
 // inertia depends on its angle, no number on a rate stands for it.
 
-#include <momenta/dae/cut/integrated_scene.h>
+#include <momenta/dae/cut/folded_scene.h>
 
 namespace momenta {
 

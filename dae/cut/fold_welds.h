@@ -5,7 +5,7 @@
 //   I = I₁ + R I₂ Rᵀ + m₁ m₂ / m (d² 1 − d dᵀ),  d = c₂' − c₁
 
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/cut/integrated_scene.h>
+#include <momenta/dae/cut/folded_scene.h>
 
 namespace momenta {
 

@@ -2,7 +2,7 @@
 // Coordinates and rates of the scene as written, from those of the scene that is integrated. A
 // joint that is one in both scenes has the same numbers there, in other places. A joint that was
 // cut has those of the motion of its two bodies (relative_motion.h), and one that was folded away
-// those of the joint it follows (integrated_scene.h); what its equations leave open then shows at
+// those of the joint it follows (folded_scene.h); what its equations leave open then shows at
 // the loops of the scene as written. Angles are known but for whole turns: of them that one is
 // taken which is nearest to
 //
@@ -12,7 +12,7 @@
 // before.
 
 #include <momenta/core/scene/drive.h>
-#include <momenta/dae/cut/integrated_scene.h>
+#include <momenta/dae/cut/folded_scene.h>
 #include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/solver/memory.h>
 

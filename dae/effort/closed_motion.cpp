@@ -1,7 +1,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/effort/closed_motion.h>
-#include <momenta/dae/joint_places.h>
+#include <momenta/dae/mechanism.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // Identification: parameters of a scene for which its run comes nearest to a measured motion,
 //
-//   min ½ |r(θ)|²   (measured_motion.h),   from ≤ θ ≤ to,
+//   min ½ |r(θ)|²   (measured_error.h),   from ≤ θ ≤ to,
 //
 // masses, springs, dampers, lengths, start values, by the method of Levenberg and Marquardt with
 // bounds (least_squares_search.h); starts as of fit(). Where the mechanism cannot be assembled, or
@@ -15,7 +15,7 @@
 // ch. 10.
 
 #include <momenta/dae/fit/fit.h>
-#include <momenta/dae/fit/measured_motion.h>
+#include <momenta/dae/fit/measured_error.h>
 
 namespace momenta {
 

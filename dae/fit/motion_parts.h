@@ -1,6 +1,6 @@
 #pragma once
 // Numbers of a motion as functions of parameters θ of the scene, with their derivatives: what
-// formulas of a motion are made of. A motion is swept (swept_parts.h) or run (motion_parts.h).
+// formulas of a motion are made of. A motion is swept (swept_parts.h) or run.
 
 #include <momenta/dae/fit/motion_formula.h>
 #include <momenta/dae/fit/parametric_mechanism.h>

@@ -2,7 +2,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/fit/swept_poses.h>
 #include <momenta/dae/kinematics/held_coordinate.h>
-#include <momenta/dae/kinematics/turns.h>
+#include <momenta/dae/kinematics/idle_turns.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/dae_form.h>
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/loop/loop_weights.h>
+#include <momenta/dae/mechanism.h>
 #include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// Follows paths of a homotopy (homotopy.h), one after the other.
+// Follows paths of a homotopy, one after the other.
 
 #include <momenta/dae/kinematics/polynomial_system.h>
 #include <momenta/dae/kinematics/start_system.h>

@@ -2,8 +2,8 @@
 #include <momenta/dae/event/bracketed_root.h>
 #include <momenta/dae/kinematics/change_point.h>
 #include <momenta/dae/kinematics/held_coordinate.h>
+#include <momenta/dae/kinematics/idle_turns.h>
 #include <momenta/dae/kinematics/move_rows.h>
-#include <momenta/dae/kinematics/turns.h>
 #include <momenta/dae/measure/rank.h>
 
 #include <algorithm>

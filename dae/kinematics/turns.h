@@ -12,11 +12,8 @@
 // take c to Q c, and the rest about c. Of the two solutions the one with smaller angles, Σ |α|, is
 // taken.
 
-#include <momenta/dae/kinematics/pose_curve.h>
-
 #include <Eigen/Geometry>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace momenta {
@@ -43,14 +40,5 @@ inline Eigen::Isometry3d turned_about(const Eigen::Vector3d& centre,
   d.translate(-centre);
   return d;
 }
-
-// Idle freedoms: a coupler with a ball at both ends spins about the line through them. In J's null
-// space at the start, these are directions in which balls alone turn, each about one line, and
-// which a finite turn follows with loops closed.
-
-/// Starts the curve at the pose q with all idle turns held; false: not one freedom is left. @param
-/// held names of their joints
-bool start_without_idle_turns(PoseCurve& curve, double t, const Eigen::VectorXd& q,
-                              CurvePoint& point, std::vector<std::string>& held);
 
 }  // namespace momenta

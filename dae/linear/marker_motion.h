@@ -3,7 +3,7 @@
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/scalar/power_series.h>
-#include <momenta/dae/joint_places.h>
+#include <momenta/dae/marker_points.h>
 #include <momenta/dae/mechanism.h>
 
 #include <memory>

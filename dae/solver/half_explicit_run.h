@@ -15,6 +15,7 @@
 #include <momenta/dae/solver/aligned_array.h>
 #include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/half_explicit.h>
+#include <momenta/dae/solver/half_explicit_error.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/output_cursor.h>

@@ -18,9 +18,9 @@
 #include <momenta/dae/solver/ida_matrix.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/ode_restart.h>
+#include <momenta/dae/solver/rounding_floor.h>
 #include <momenta/dae/solver/sundials_handles.h>
 #include <momenta/dae/solver/system.h>
-#include <momenta/dae/solver/weighted_norm.h>
 
 #include <algorithm>
 #include <array>

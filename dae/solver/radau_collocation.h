@@ -263,6 +263,7 @@ class OdeRadauCollocation {
 
   /// y at t + h from y at t, in place, with an estimate below `tolerance` (1 + |y|) in every
   /// component; rhs(t, y, ydot) returns false where it fails. False, y untouched: h is too long.
+  /// O((s size)³)
   template <class Rhs>
   bool step(double t, double h, std::vector<S>& y, double tolerance, Rhs&& rhs) {
     Residual<Rhs> f{*this, rhs};

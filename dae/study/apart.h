@@ -10,8 +10,8 @@
 // The second bound is what the Newton iterations and the interpolants between steps leave, with a
 // margin; beyond it a form no longer holds Φ = 0.
 
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_result.h>
 

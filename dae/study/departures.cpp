@@ -1,4 +1,4 @@
-#include <momenta/dae/joint_places.h>
+#include <momenta/dae/mechanism.h>
 #include <momenta/dae/study/departures.h>
 #include <momenta/dae/text/number_text.h>
 

@@ -4,7 +4,7 @@
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/pair_of_loop.h>
 #include <momenta/dae/study/motion.h>
-#include <momenta/dae/study/picture.h>
+#include <momenta/dae/study/picture_order.h>
 
 #include <algorithm>
 #include <cmath>

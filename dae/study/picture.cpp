@@ -3,7 +3,7 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/dae/loop/pair_of_loop.h>
 #include <momenta/dae/study/motion.h>
-#include <momenta/dae/study/picture.h>
+#include <momenta/dae/study/picture_order.h>
 #include <momenta/dae/study/upright.h>
 
 #include <map>

@@ -13,11 +13,9 @@
 //   g(t) = the part of x_A − x_B that the loop does not allow,   ground axes
 
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/mechanism.h>
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -119,24 +117,6 @@ struct Motion {
   };
   double start = 0, every = 0;
   std::vector<Frame> frames;
-};
-
-// Bodies in the order of pictures: parents first.
-
-/// Joints, parents first, and the place of each body in that order.
-struct PictureOrder {
-  std::vector<const JointSpec*> joints;
-  std::map<std::string, int> place{{"ground", -1}};
-
-  explicit PictureOrder(const Mechanism& mechanism) {
-    std::map<std::string, const JointSpec*> by_child;
-    for (const JointSpec& joint : mechanism.scene().joints) by_child[joint.child] = &joint;
-    for (const Tree::Body& body : mechanism.tree().bodies)
-      if (!body.name.empty()) {
-        place[body.name] = static_cast<int>(joints.size());
-        joints.push_back(by_child.at(body.name));
-      }
-  }
 };
 
 }  // namespace momenta

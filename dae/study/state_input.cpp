@@ -2,6 +2,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/mechanism.h>
 #include <momenta/dae/study/state_input.h>
 #include <momenta/dae/study/state_text.h>
 #include <momenta/dae/text/number_text.h>

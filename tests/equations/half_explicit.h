@@ -65,8 +65,7 @@ class Halving {
       for (const Exact& exact : exact_) {
         if (exact.t != t) continue;
         const auto largest = [&](int from, int to, const double* known, double& error) {
-          for (int i = from; i < to; ++i)
-            error = larger(error, std::abs(y[i] - *known++));
+          for (int i = from; i < to; ++i) error = larger(error, std::abs(y[i] - *known++));
         };
         largest(0, nq, exact.y.data(), errors.q);
         largest(nq, n, exact.y.data() + nq, errors.x);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/solver/constrained_steps.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -89,6 +90,26 @@ struct Stepped {
     return run.y;
   }
 };
+
+// Changes that shrink by 0.73 an iteration are below 1e-13 at the last one allowed, by 0.8 are not.
+TEST(Substitution, EndsAtRoundingOrFails) {
+  using Is = constrained::Convergence::Is;
+  const auto end = [](double share) {
+    constrained::Convergence convergence;
+    auto is = Is::under_way;
+    double change = 0.1;
+    for (int k = 0; is == Is::under_way; ++k, change *= share) {
+      EXPECT_LT(k, 1000);
+      is = convergence.after(change);
+    }
+    return is;
+  };
+  EXPECT_EQ(end(0.5), Is::reached);
+  EXPECT_EQ(end(0.73), Is::reached);
+  EXPECT_EQ(end(0.8), Is::failed);
+  constrained::Convergence lost;
+  EXPECT_EQ(lost.after(std::nan("")), Is::failed);
+}
 
 TEST(EnergyMomentum, KeepsConstraintsAndEnergyAtRounding) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()));
