@@ -83,7 +83,9 @@ class Searcher {
       while (!(here.left <= at_rest) && found.steps < most_steps + steps_a_rate * mechanism_.nv()) {
         ++found.steps;
         const bool moved = search == Search::settle ? settle(t, here) : halve(t, here);
-        if (search == Search::settle && here.left <= at_rest) leave_saddle(t, here);
+        // Steps may end above `at_rest`, where rounding hides what a step gains.
+        const bool ends = here.left <= at_rest || (!moved && here.left <= balanced);
+        if (search == Search::settle && ends && leave_saddle(t, here)) continue;
         if (!moved || !((here.q - q).cwiseAbs().maxCoeff() < gone * std::max(length_, 1.0))) break;
       }
       if (!(here.left <= balanced)) refuse(here, "no equilibrium was found from this pose");
@@ -193,6 +195,7 @@ class Searcher {
     constexpr int most_tries = 60;
     constexpr double least_share = 0.05, poor = 0.25, good = 0.75;
     const double rounding = 4e-15 * scale_.cwiseProduct(unit_).maxCoeff();
+    const double before = mu_;
     for (int tries = 0; tries < most_tries; ++tries, mu_ *= 4) {
       const VectorXd delta = step(t, here, mu_);
       VectorXd q;
@@ -212,23 +215,26 @@ class Searcher {
       mu_ = std::max(trusted ? 0.2 * mu_ : share < poor ? 2 * mu_ : mu_, floor());
       return true;
     }
+    mu_ = before;
     return false;
   }
 
-  /// Moves a little from a saddle, along the directions of downward curvature.
-  void leave_saddle(double t, Pose& here) {
+  /// Moves a little from a saddle, along the directions of downward curvature. False: there are
+  /// none.
+  bool leave_saddle(double t, Pose& here) {
     constexpr double aside = 0.05;  // [rad or lengths of the scene]
-    if (step(t, here, floor()).size() == 0) return;
+    if (step(t, here, floor()).size() == 0) return false;
     const VectorXd down = ways_.find(t, here.q, here.lambda, pencil_, potential_);
-    if (down.size() == 0) return;
+    if (down.size() == 0) return false;
     VectorXd q, way = aside / down.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * down;
     for (int k = 0; k < 6; ++k, way *= -0.5) {
       if (!poses_.move(t, here.q, way, q)) continue;
       if (Pose next = look(t, q); fall(here, next, way) > 0) {
         here = std::move(next);
-        return;
+        return true;
       }
     }
+    return false;
   }
 
   bool halve(double t, Pose& here) {

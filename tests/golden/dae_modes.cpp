@@ -74,16 +74,22 @@ TEST_F(ModesOfTheProgram, RefuseWhatTheyCannotDoInOneSentence) {
 
 TEST_F(ModesOfTheProgram, OfDrivesHeldAndManyJoints) {
   EXPECT_NE(call("modes '" + example("driven") + "'").out.find("4.2888"), std::string::npos);
-  // 310 rods, from level: 3 modes of all, by Lanczos' method; the lowest near Bernoulli's rope.
-  const fs::path scene = write("chain.toml", call("make chain --n 310").out);
-  const Outcome o = call("modes '" + scene.string() + "' --json --count 3 --kkt sparse");
-  ASSERT_EQ(o.status, 0) << o.err;
-  const auto json = nlohmann::json::parse(o.out);
-  EXPECT_EQ(json["complete"], false);
-  EXPECT_EQ(json["route"], "sparse");
-  ASSERT_EQ(json["modes"].size(), 3u);
-  const double rope = 0.5 * 2.404825557695773 * std::sqrt(9.81 / 310);
-  EXPECT_NEAR(json["modes"][0]["angular_frequency"].get<double>(), rope, 1e-4 * rope);
+  // Rods from level: 3 modes of all, by Lanczos' method; the lowest near Bernoulli's rope. On the
+  // way they fold, and steps stall by rounding at poses from which they can still fall.
+  for (const int rods : {302, 308, 310}) {
+    SCOPED_TRACE(rods);
+    const fs::path scene = write("chain.toml", call("make chain --n " + std::to_string(rods)).out);
+    const Outcome o = call("modes '" + scene.string() + "' --json --count 3 --kkt sparse");
+    ASSERT_EQ(o.status, 0) << o.err;
+    const auto json = nlohmann::json::parse(o.out);
+    EXPECT_EQ(json["complete"], false);
+    EXPECT_EQ(json["route"], "sparse");
+    const double hanging = -0.5 * 9.81 * rods * rods;  // V [J]
+    EXPECT_NEAR(json["equilibrium"]["potential"].get<double>(), hanging, -1e-9 * hanging);
+    ASSERT_EQ(json["modes"].size(), 3u);
+    const double rope = 0.5 * 2.404825557695773 * std::sqrt(9.81 / rods);
+    EXPECT_NEAR(json["modes"][0]["angular_frequency"].get<double>(), rope, 1e-4 * rope);
+  }
 }
 
 }  // namespace
