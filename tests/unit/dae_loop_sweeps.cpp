@@ -334,7 +334,7 @@ TEST(LoopSweeps, LargeBatchesGoStateByState) {
 
 TEST(LoopSweeps, CodeOfALevelIsItsOwn) {
   expect_own_symbols(
-      MOMENTA_BINARY_DIR "/dae", "*_level[134].cpp.o",
+      MOMENTA_BINARY_DIR "/dae", "*_kernels.cpp.o",
       {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<", "TangentSweepsAt<", "tangent_sweeps_at<",
        "KineticSweepAt<", "kinetic_sweep_at<", "NumberSweepAt<", "number_sweep_at<", "LoopNumbers<",
        "PlacedAlong<", "DirectionSweepsAt<", "direction_sweeps_at<", "NumberRowsAt<",
