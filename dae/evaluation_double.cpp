@@ -13,8 +13,8 @@ const KktPattern& Mechanism::kkt_pattern() const {
         pattern_.mass.push_back({row, column});
       return;
     }
-    visit([&]<class Space>(const Cast<Space>& cast) {
-      SweepEvaluation<Space> e(*this, cast);
+    visit([&]<class Space>(const ModelData<Space>& data) {
+      SweepEvaluation<Space> e(*this, data);
       e.place(0, tree_.q0.data());
       e.each_mass_entry([&](int i, int j, double) { pattern_.mass.push_back({i, j}); });
     });
@@ -29,8 +29,8 @@ const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
         pattern_.constraint.push_back({row, column});
       return;
     }
-    visit([&]<class Space>(const Cast<Space>& cast) {
-      SweepEvaluation<Space> e(*this, cast);
+    visit([&]<class Space>(const ModelData<Space>& data) {
+      SweepEvaluation<Space> e(*this, data);
       e.place(0, tree_.q0.data());
       e.each_constraint_entry([&](int i, int j, double) { pattern_.constraint.push_back({i, j}); });
     });
@@ -41,9 +41,10 @@ const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const {
   if (scene_.lagrangian) return std::make_unique<LagrangianEvaluation>(lagrangian(), kkt_pattern());
-  return visit([&]<class Space>(const Cast<Space>& cast) -> std::unique_ptr<Evaluation<double>> {
-    return std::make_unique<SweepEvaluation<Space>>(*this, cast);
-  });
+  return visit(
+      [&]<class Space>(const ModelData<Space>& data) -> std::unique_ptr<Evaluation<double>> {
+        return std::make_unique<SweepEvaluation<Space>>(*this, data);
+      });
 }
 
 }  // namespace momenta

@@ -3,8 +3,8 @@
 // and where it has no constraints (q, p) → (u, ṗ) and (q, u) → u̇ by factors of M.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/lagrangian_rows.h>
+#include <momenta/dae/tree_factor.h>
 
 namespace momenta {
 

@@ -6,9 +6,8 @@
 #include <momenta/core/scalar/local_dual.h>
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/evaluation.h>
-#include <momenta/dae/factor/kkt_pattern.h>
+#include <momenta/dae/kkt_pattern.h>
 #include <momenta/dae/loop/row_name.h>
-#include <momenta/dae/sweeps/levels/looped_sweeps.h>
 
 #include <memory>
 #include <mutex>
@@ -18,8 +17,10 @@
 
 namespace momenta {
 
-class AxisScale;         // dae/factor/axis_scale.h
 struct LagrangianModel;  // core/lagrangian/lagrangian_model.h
+template <class Space>
+struct ModelData;    // dae/model_data.h
+class SolverChoice;  // dae/kkt/solver_choice.h
 
 /// How (7) is solved: by sweeps that carry the loops, or by an assembled matrix.
 enum class KktChoice {
@@ -72,30 +73,15 @@ class Mechanism {
   int nq() const { return tree_.nq; }         ///< coordinates
   int nv() const { return tree_.nv; }         ///< rates, momenta
   int m() const { return rows_; }             ///< loop equations
-  /// How (7) is solved where there are loops; never `automatic`.
-  KktChoice kkt() const { return kkt_; }
-  /// Whether an assembled matrix is dense, where one is needed.
-  bool dense_kkt() const { return dense_; }
-  /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
-  /// that point, and a solution so made is right to most_leaves_first_error (leaves_first.h).
-  bool leaves_first() const { return light_.empty(); }
-  /// Whether the sparse matrix is that of the bodies' equations: the joints' equations cost more
-  /// where bodies are on average more than 40 joints from the ground. O(bodies)
-  bool solved_by_bodies() const;
+  /// How (7) is solved where there are loops, chosen at the first call. @throws SceneError where
+  /// the options ask for a way that does not solve it
+  const SolverChoice& solver() const;
   /// LoopWeights::spread
   double mass_spread() const { return mass_spread_; }
   /// LoopWeights::apart
   double masses_apart() const { return masses_apart_; }
-  /// The sweeps that carry the loops, for one instruction level; 0: the machine's best.
-  /// `branches_side_by_side`: for one state, spatial sweeps take folded branches of one shape in
-  /// the lanes of a register. @throws std::logic_error where there are no loops, or more loop
-  /// equations are open at once than there are slots
-  std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0,
-                                              bool branches_side_by_side = true) const;
-  /// The same with the loops between the pairs of bodies that the scene gives.
-  std::unique_ptr<LoopedSweeps> looped_sweeps_as_given() const;
-  /// Whether loops that meet in one point are tied between other pairs of bodies than in the scene.
-  bool pairs_anew() const;
+  /// LoopWeights::light
+  const std::string& furthest_apart() const { return furthest_apart_; }
   bool has_body_forces() const;   ///< springs, bushings, wrenches or formulas
   bool has_forces_apart() const;  ///< among them coordinate springs or formulas
   bool has_joint_forces() const;  ///< springs, dampers, friction or torques of joints
@@ -126,9 +112,6 @@ class Mechanism {
   /// rounding alone, as are four of the five rows of a slide along the axis of a cylindrical joint.
   /// Zero for rows of axes, whose natural size is known, and for couplers.
   const std::vector<double>& least_scales() const { return least_scales_; }
-  /// The scales by which rows are measured.
-  AxisScale axis_scale() const;
-
   /// A workspace for one thread; S is double, Dual8, LocalDual or Jet.
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
@@ -145,30 +128,16 @@ class Mechanism {
   /// Columns of efforts of driven joints, in the order of Tree::drives.
   std::vector<Column> effort_columns() const;
 
-  /// Lines of the plan, of core and of the loops.
-  std::vector<std::pair<std::string, std::string>> plan_lines() const;
-
-  /// Why a solution failed at (t, q): one sentence naming the joints that neither inertia nor a
-  /// loop holds (unheld_joints.h). `rate`: the place in u at which it failed; −1: not known.
-  std::string no_inertia(int rate, double t, const double* q) const;
-
- private:
-  /// Branches that the sweeps take side by side; empty: none.
-  std::string looped_branches_in_words() const;
-  std::vector<std::pair<std::string, std::string>> lagrangian_lines() const;
-  template <class Space>
-  struct Cast;
-  struct Casts;
+  /// Calls f with the ModelData of the plan's algebra; without bodies where there is a Lagrangian.
+  /// Defined in dae/model_data.h.
   template <class F>
   decltype(auto) visit(F&& f) const;
-  void expect_sweeps() const;
+
+ private:
+  struct Models;
   void take_bodies();
   void take_lagrangian();
-  void choose_kkt(KktChoice asked);
   void take_weights();
-  std::string joint_without_inertia(bool swept) const;
-  std::string loops_missed(bool swept) const;
-  std::string light_before_loops(int rate) const;
   template <class Space, class S>
   class SweepRows;
   template <class Space>
@@ -178,14 +147,12 @@ class Mechanism {
   MechanismOptions options_;
   Tree tree_;
   Plan plan_;
-  std::unique_ptr<Casts> casts_;  ///< mechanism_inside.h
+  std::unique_ptr<Models> models_;  ///< dae/model_data.h
   int rows_ = 0;
-  bool dense_ = true;
-  KktChoice kkt_ = KktChoice::dense;
-  std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
   double mass_spread_ = 1, masses_apart_ = 1;
-  std::string furthest_apart_;  ///< LoopWeights::light
-  std::string light_;  ///< which joint has too little inertia before its loops close, or empty
+  std::string furthest_apart_;
+  mutable std::shared_ptr<const SolverChoice> solver_;
+  mutable std::once_flag solver_known_;
   mutable KktPattern pattern_;
   mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;
   std::vector<RowName> row_names_;

@@ -1,7 +1,7 @@
 // A mechanism made of a Lagrangian: patterns, names and units of its coordinates and constraints,
 // and what is asked of its formulas at the start.
 
-#include <momenta/dae/mechanism_inside.h>
+#include <momenta/dae/model_data.h>
 
 #include <cmath>
 
@@ -94,11 +94,11 @@ std::vector<double> scales_of_constraints(const Mechanism& mechanism,
 }  // namespace
 
 const LagrangianModel& Mechanism::lagrangian() const {
-  return *casts_->lagrangian;
+  return *models_->lagrangian;
 }
 
 void Mechanism::take_lagrangian() {
-  const LagrangianModel& model = casts_->lagrangian.emplace(build_lagrangian_model(scene_));
+  const LagrangianModel& model = models_->lagrangian.emplace(build_lagrangian_model(scene_));
   plan_.drives = model.in_time || model.linear;
   int group = 0;
   for (const auto& c : scene_.lagrangian->constraints) {

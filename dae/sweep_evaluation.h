@@ -22,12 +22,12 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   using typename Rows::Force;
 
  public:
-  SweepEvaluation(const Mechanism& mechanism, const Cast<Space>& cast)
-      : Rows(mechanism, cast),
+  SweepEvaluation(const Mechanism& mechanism, const ModelData<Space>& data)
+      : Rows(mechanism, data),
         scene_(mechanism.scene()),
-        links_(build_links(cast.model)),
-        markers_(mechanism.scene(), mechanism.tree(), cast.model) {
-    if (cast.loops.loops.empty()) {
+        links_(build_links(data.model)),
+        markers_(mechanism.scene(), mechanism.tree(), data.model) {
+    if (data.loops.loops.empty()) {
       momentum_.emplace(links_);
       acceleration_.emplace(links_);
     }

@@ -9,17 +9,17 @@
 #include <momenta/dae/bearings.h>
 #include <momenta/dae/lagrangian_rows.h>
 #include <momenta/dae/loop/loop_rows.h>
-#include <momenta/dae/mechanism_inside.h>
+#include <momenta/dae/model_data.h>
 
 namespace momenta {
 
 template <class Space, class S>
 class Mechanism::SweepRows : public Evaluation<S> {
  public:
-  SweepRows(const Mechanism& mechanism, const Cast<Space>& cast)
-      : model_(cast.model),
-        w_(cast.model),
-        loops_(cast.loops, w_),
+  SweepRows(const Mechanism& mechanism, const ModelData<Space>& data)
+      : model_(data.model),
+        w_(data.model),
+        loops_(data.loops, w_),
         bearings_(mechanism.scene(), mechanism.tree()),
         still_(static_cast<std::size_t>(mechanism.nv())) {}
 
@@ -109,8 +109,8 @@ class Mechanism::SweepRows : public Evaluation<S> {
 template <class S>
 std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
   if (scene_.lagrangian) return std::make_unique<LagrangianRows<S>>(lagrangian());
-  return visit([&]<class Space>(const Cast<Space>& cast) -> std::unique_ptr<Evaluation<S>> {
-    return std::make_unique<SweepRows<Space, S>>(*this, cast);
+  return visit([&]<class Space>(const ModelData<Space>& data) -> std::unique_ptr<Evaluation<S>> {
+    return std::make_unique<SweepRows<Space, S>>(*this, data);
   });
 }
 

@@ -1,7 +1,8 @@
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/unheld_joints.h>
+#include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <cmath>
 #include <cstdio>
@@ -40,7 +41,7 @@ namespace {
   throw SceneError(
       mechanism.scene().where({}) +
       (mechanism.scene().lagrangian ? "" : "the mechanism cannot move at its start: ") +
-      mechanism.no_inertia(rate, s.t, s.q.data()));
+      momenta::no_inertia(mechanism, rate, s.t, s.q.data()));
 }
 
 /// Fills udot and lambda; `tau` (nv): forces of friction, or null.
@@ -55,7 +56,7 @@ void solve_for_accelerations(const Mechanism& mechanism, Evaluation<double>& e, 
       no_inertia(e.singular_joint());
     return;
   }
-  if (mechanism.kkt() == KktChoice::sweeps && !mechanism.dense_kkt()) {
+  if (mechanism.solver().kkt() == KktChoice::sweeps && !mechanism.solver().dense()) {
     const auto solver = make_loop_solver(mechanism, e);
     solver->push(tau);
     if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),

@@ -4,6 +4,7 @@
 #include <momenta/core/arguments.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ struct ClosedChain::Inside {
   /// Notes why the solver failed; returns `ok`.
   bool noted(bool ok, double t, const double* q) {
     if (!ok)
-      failure = tree ? tree->failure() : mechanism.no_inertia(solver->singular_joint(), t, q);
+      failure = tree ? tree->failure() : no_inertia(mechanism, solver->singular_joint(), t, q);
     return ok;
   }
   static std::span<const double> list(const double* x, int n) {

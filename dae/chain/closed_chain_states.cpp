@@ -2,8 +2,9 @@
 // threads where they carry the loops, else one by one.
 
 #include <momenta/core/share.h>
-#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/chain/closed_chain_inside.h>
+#include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <array>
 #include <atomic>
@@ -28,15 +29,15 @@ void expect_states(const char* call, double t, Eigen::Index count, int threads,
 
 bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool of_momenta,
                                        double leak, int threads) {
-  if (all.count == 0 || mechanism.kkt() != KktChoice::sweeps ||
+  if (all.count == 0 || mechanism.solver().kkt() != KktChoice::sweeps ||
       (mechanism.has_body_forces() && !mechanism.plan().planar) || mechanism.has_forces_apart())
     return false;
-  if (batches.empty()) batches.push_back(mechanism.looped_sweeps());
+  if (batches.empty()) batches.push_back(mechanism.solver().sweeps());
   // Packs are whole, so that the number of threads does not change the bits.
   const auto width = static_cast<std::size_t>(batches.front()->width());
   const std::size_t packs = (all.count + width - 1) / width,
                     parts = std::min(static_cast<std::size_t>(threads), packs);
-  while (batches.size() < parts) batches.push_back(mechanism.looped_sweeps());
+  while (batches.size() < parts) batches.push_back(mechanism.solver().sweeps());
   std::atomic<bool> done = true;
   share(static_cast<int>(parts), parts, [&](std::size_t part) {
     const std::size_t first = packs * part / parts * width,

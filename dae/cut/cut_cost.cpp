@@ -1,6 +1,7 @@
 #include <momenta/dae/cut/cut_cost.h>
 #include <momenta/dae/factor/filtered_factor.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
@@ -88,7 +89,7 @@ CutCost cost_in(const Tree& tree, const Scene& scene, const Plan& plan) {
 
 CutCost cut_cost(const Mechanism& mechanism) {
   CutCost cost = cost_in(mechanism.tree(), mechanism.scene(), mechanism.plan());
-  if (mechanism.kkt() == KktChoice::sparse && filters_pivots(mechanism))
+  if (mechanism.solver().kkt() == KktChoice::sparse && mechanism.solver().filters_pivots())
     cost.factor_entries =
         FilteredFactor(mechanism.kkt_pattern(), mechanism.nv(), mechanism.row_groups()).entries();
   return cost;

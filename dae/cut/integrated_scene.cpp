@@ -2,6 +2,7 @@
 #include <momenta/dae/cut/fold_rotors.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/interchange.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <algorithm>
 
@@ -11,7 +12,8 @@ namespace {
 /// Whether cuts are worth other coordinates: a tenth less work, or swept at all. Another order of
 /// the same coordinates need only cost less.
 bool pays(const Mechanism& written, const Recut& cuts) {
-  return written.kkt() != KktChoice::sweeps || 10 * cuts.after.sweeps < 9 * cuts.before.sweeps ||
+  return written.solver().kkt() != KktChoice::sweeps ||
+         10 * cuts.after.sweeps < 9 * cuts.before.sweeps ||
          (cuts.cut.empty() && cuts.after.sweeps < cuts.before.sweeps);
 }
 

@@ -3,6 +3,7 @@
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/tree_order.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
@@ -130,7 +131,10 @@ class Contest {
  public:
   /// `edges`: the tree of the given scene.
   Contest(const Mechanism& given, const std::vector<CutEdge>& edges, Recut& best)
-      : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best), best_edges_(edges) {}
+      : given_(given),
+        swept_(given.solver().kkt() == KktChoice::sweeps),
+        best_(best),
+        best_edges_(edges) {}
 
   /// Enters a scene; returns whether the sweeps carry its loops. `edges`: its tree, which enters
   /// once.
@@ -196,7 +200,7 @@ class Contest {
   bool enter_one(Recut found, const CutCost& cost) {
     found.mechanism =
         std::make_shared<const Mechanism>(found.scene, MechanismOptions{given_.options().algebra});
-    const bool now_swept = found.mechanism->kkt() == KktChoice::sweeps;
+    const bool now_swept = found.mechanism->solver().kkt() == KktChoice::sweeps;
     found.after = now_swept ? cost : cut_cost(*found.mechanism);
     if ((now_swept && !swept_) || (now_swept == swept_ && better(found.after, best_.after))) {
       best_ = std::move(found);

@@ -3,6 +3,7 @@
 #include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace momenta {
 
@@ -13,14 +14,13 @@ void scale_idle_rows(std::vector<double>& scale) {
     if (s == 0) s = most > 0 ? most : 1;
 }
 
-AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
-                     const std::vector<int>& groups, const std::vector<double>& least,
-                     double spread, double apart)
-    : pattern_(constraint),
-      groups_(groups),
-      least_(least),
-      far_apart_(std::max(1.0, spread / masses_far_apart)),
-      apart_(apart) {
+AxisScale::AxisScale(const Mechanism& mechanism)
+    : pattern_(mechanism.constraint_pattern()),
+      groups_(mechanism.row_groups()),
+      least_(mechanism.least_scales()),
+      far_apart_(std::max(1.0, mechanism.mass_spread() / masses_far_apart)),
+      apart_(mechanism.masses_apart()) {
+  const Tree& tree = mechanism.tree();
   std::vector<bool> turns(static_cast<std::size_t>(tree.nv), false);
   for (const auto& b : tree.bodies) {
     for (int i = 0; i < b.nv; ++i) turns[static_cast<std::size_t>(b.u + i)] = !b.is_length(i);
@@ -68,6 +68,17 @@ void AxisScale::of_groups(const std::vector<double>& inertia, const std::vector<
               sum / static_cast<double>(last - first));
     first = last;
   }
+}
+
+bool AxisScale::fade_groups(const std::vector<double>& inertia,
+                            const std::vector<double>& constraint, const double* compliance,
+                            double fade, std::vector<double>& tau) const {
+  of_groups(inertia, constraint, tau);
+  for (double& t : tau) {
+    t = compliance ? 0 : t * fading(fade);
+    if (!std::isfinite(t)) return false;
+  }
+  return true;
 }
 
 void AxisScale::softness(const std::vector<double>& inertia, const std::vector<double>& constraint,

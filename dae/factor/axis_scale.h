@@ -3,8 +3,7 @@
 // its axes vanish to rounding in every entry: they are redundant, not weak, and their remains are
 // no scale.
 
-#include <momenta/core/tree/tree.h>
-#include <momenta/dae/factor/kkt_pattern.h>
+#include <momenta/dae/mechanism.h>
 
 #include <vector>
 
@@ -16,11 +15,8 @@ void scale_idle_rows(std::vector<double>& scale);
 
 class AxisScale {
  public:
-  /// `constraint`: pattern of Φ_q; `groups`, `least` (m): Mechanism::row_groups, least_scales;
-  /// `spread`, `apart`: LoopWeights. The first four are kept by reference, but for the tree.
-  AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
-            const std::vector<int>& groups, const std::vector<double>& least, double spread,
-            double apart);
+  /// Keeps the mechanism's Φ_q pattern, row groups and least scales by reference.
+  explicit AxisScale(const Mechanism& mechanism);
 
   /// Share of its scale below which a pivot fades, where masses are apart: fade_beside().
   double fading(double fade) const;
@@ -33,6 +29,10 @@ class AxisScale {
   /// `constraint`: values of Φ_q in the order of the pattern.
   void of_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
                  std::vector<double>& scale) const;
+  /// Pivot below which each row (m) fades, fading(fade) of of_groups(); 0 for all where there is a
+  /// compliance. False where a scale is not finite. No allocation.
+  bool fade_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                   const double* compliance, double fade, std::vector<double>& tau) const;
   /// ε of KluSolver (m), from the same. An added block, once refined, costs (ε/W)² on every row: so
   /// it is a hundred times weaker than the filter of pivots, which costs (τ/W)⁴. The scale is a
   /// row's mobility by the lightest body of its loop; beyond masses_far_apart the heaviest's is

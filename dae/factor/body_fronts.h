@@ -1,7 +1,7 @@
 #pragma once
-// The bodies' equations (dae/body_matrix.h) factorised by fronts, pivots of σ filtered. From the
-// tips to the ground a body k has a front, what is left of the equations of its subtree in Ω_k and
-// in the σ of the loops that are open there:
+// The bodies' equations (dae/kkt/body_matrix.h) factorised by fronts, pivots of σ filtered. From
+// the tips to the ground a body k has a front, what is left of the equations of its subtree in Ω_k
+// and in the σ of the loops that are open there:
 //
 //   ( M*  C ) ( Ω )   ( y )
 //   ( Cᵀ −W ) ( σ ) = ( s )
@@ -19,7 +19,7 @@
 // to come. Multifrontal: fronts wait on a stack until that of their parent takes them. Source:
 // Duff, Reid, ACM TOMS 9 (1983) 302; Featherstone, Rigid Body Dynamics Algorithms, ch. 7.
 
-#include <momenta/dae/factor/kkt_pattern.h>
+#include <momenta/dae/kkt_pattern.h>
 
 #include <vector>
 

@@ -17,7 +17,7 @@
 // Source: Davis, Direct Methods for Sparse Linear Systems, ch. 4; Amestoy, Davis, Duff, ACM TOMS 30
 // (2004) 381, for the order.
 
-#include <momenta/dae/factor/kkt_pattern.h>
+#include <momenta/dae/kkt_pattern.h>
 
 #include <vector>
 

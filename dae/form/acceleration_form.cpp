@@ -1,4 +1,5 @@
 #include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <algorithm>
 #include <limits>
@@ -34,7 +35,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
   if (!has_loops()) {
     if (!rub(t, q, u)) return false;
     if (!e_->open_accelerations(t, q, u, udot))
-      return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
+      return fail_at(t, no_inertia(mechanism_, e_->singular_joint(), t, q));
     coordinate_rates(q, u, ydot);
     return true;
   }

@@ -11,6 +11,7 @@
 
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/half_explicit_parts.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 namespace momenta {
 namespace {
@@ -36,7 +37,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     if (!rub(t, q, v)) return false;
     if (!w.solver) {
       if (!w.e->open_accelerations(t, q, v, vdot))
-        return failed(mechanism_.no_inertia(w.e->singular_joint(), t, q));
+        return failed(no_inertia(mechanism_, w.e->singular_joint(), t, q));
     } else if (!w.solver->acceleration(t, q, v, centre(z), 0, 0, vdot, z)) {
       return failed("the solution of (3) is not finite");
     }

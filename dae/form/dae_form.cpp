@@ -1,11 +1,12 @@
-#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism.h>
-#include <momenta/dae/unheld_joints.h>
+#include <momenta/dae/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,10 +61,10 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 }
 
 void DaeForm::find_redundancy(const Start& start) {
-  if (!mechanism_.leaves_first()) {  // the loops have no pivots of their own
+  if (!mechanism_.solver().leaves_first()) {  // the loops have no pivots of their own
     plain_.e->place(start.t, start.q.data());
     if (loop_rank(mechanism_, *plain_.e, Judged::dependence).rank == layout_.m) return;
-  } else if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
+  } else if (mechanism_.solver().dense() || mechanism_.solver().kkt() != KktChoice::sweeps) {
     const auto kkt = make_dense_kkt(mechanism_);
     if (!kkt->factor(*plain_.e, start.t, start.q.data(), fade_evaluation) || kkt->faded() == 0)
       return;
@@ -177,7 +178,7 @@ bool DaeForm::near_singular(double t, const double* y) {
     d.always_faded = layout_.m;
     for (auto* v : {&d.u, &d.udot}) v->resize(static_cast<std::size_t>(layout_.nv));
     for (auto* v : {&d.sigma, &d.lambda}) v->assign(static_cast<std::size_t>(layout_.m), 0.0);
-    if (!epsilon_.empty() && mechanism_.leaves_first()) look_beside_start();
+    if (!epsilon_.empty() && mechanism_.solver().leaves_first()) look_beside_start();
   }
   if (!find_pivots(t, y)) return false;
   const LoopSolver::Pivots pivots = d.solver->pivots();
@@ -340,7 +341,8 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
   // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last
   // Newton residual.
   auto& e = *plain_.e;
-  if (layout_.m > 0 && mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
+  if (layout_.m > 0 && mechanism_.solver().kkt() == KktChoice::sweeps &&
+      !mechanism_.solver().dense()) {
     if (!reader_) reader_ = make_loop_solver(mechanism_, e);
     reader_->stabilise(beta());
     Eigen::VectorXd unused(layout_.m);

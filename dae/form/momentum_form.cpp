@@ -1,5 +1,6 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/momentum_form.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,7 @@ bool MomentumForm::rhs(double t, const double* y, double* ydot) {
   double* pdot = ydot + mechanism_.nq();
   if (!has_loops()) {
     if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
-      return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
+      return fail_at(t, no_inertia(mechanism_, e_->singular_joint(), t, q));
   } else {
     if (corrects_) {
       place_.assign(q, q + mechanism_.nq());
@@ -136,7 +137,7 @@ bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out)
   if (has_loops() && options_.project && !correct_position(t, out.q.data())) return false;
   if (!has_loops()) {
     if (!e_->open_momentum_rates(t, q, p, u_.data(), work_.data()))
-      return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
+      return fail_at(t, no_inertia(mechanism_, e_->singular_joint(), t, q));
   } else if (!solve(t, q, p, nullptr)) {
     return false;
   }

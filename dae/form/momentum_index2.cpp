@@ -13,6 +13,7 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/half_explicit_parts.h>
 #include <momenta/dae/form/impulse_gauge.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
     double* pdot = f + layout_.x();
     if (!w.solver) {
       if (!w.e->open_momentum_rates(t, q, p, w.u.data(), pdot))
-        return failed(mechanism_.no_inertia(w.e->singular_joint(), t, q));
+        return failed(no_inertia(mechanism_, w.e->singular_joint(), t, q));
     } else if (!w.solver->momentum(t, q, p, centre(z), fade_evaluation, leak(), w.u.data(), z,
                                    pdot)) {
       return failed("the solution of (7) is not finite");

@@ -31,6 +31,7 @@
 #include <momenta/dae/kkt/coordinate_split.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -312,7 +313,7 @@ class Partitioned final : public OdeForm {
     if (!rub(t, q_.data(), u_.data())) return false;
     if (!has_loops())
       return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
-             fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q_.data()));
+             fail_at(t, no_inertia(mechanism_, e_->singular_joint(), t, q_.data()));
     return solver_->acceleration(t, q_.data(), u_.data(), centre_.data(), 0, 0, udot_.data(),
                                  multipliers_.data()) ||
            solver_failed(t, q_.data(), "the solution of (3)");

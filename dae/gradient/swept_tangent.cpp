@@ -3,6 +3,7 @@
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/swept_tangent.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/SparseCore>
@@ -154,7 +155,7 @@ std::unique_ptr<SweptTangent> made(const Mechanism& mechanism, Model<Space> buil
 std::unique_ptr<SweptTangent> make_swept_tangent(const Mechanism& mechanism, double leak,
                                                  double beta) {
   if (mechanism.scene().lagrangian || mechanism.plan().quasi_velocities) return nullptr;
-  if (mechanism.m() > 0 && mechanism.kkt() != KktChoice::sweeps) return nullptr;
+  if (mechanism.m() > 0 && mechanism.solver().kkt() != KktChoice::sweeps) return nullptr;
   const Tree& tree = mechanism.tree();
   if (mechanism.plan().planar) {
     if (mechanism.has_forces_apart()) return nullptr;

@@ -3,6 +3,7 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <algorithm>
 
@@ -13,7 +14,7 @@ class AssembledSolver final : public LoopSolver {
  public:
   AssembledSolver(const Mechanism& mechanism, Evaluation<double>& e)
       : drives_(mechanism.plan().drives),
-        by_klu_(!filters_pivots(mechanism)),
+        by_klu_(!mechanism.solver().filters_pivots()),
         e_(e),
         kkt_(make_kkt(mechanism)),
         r_(static_cast<std::size_t>(mechanism.nv())),

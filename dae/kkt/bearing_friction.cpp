@@ -2,6 +2,7 @@
 #include <momenta/dae/bearings.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/multipliers.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 
 #include <cmath>
 #include <cstdio>
@@ -58,7 +59,7 @@ bool BearingFriction::solve(double t, const double* q, const double* u, const do
   }
   if (!found) {
     const int joint = solver_ ? solver_->singular_joint() : e_->singular_joint();
-    failure_ = joint >= 0 ? mechanism_.no_inertia(joint, t, q)
+    failure_ = joint >= 0 ? no_inertia(mechanism_, joint, t, q)
                           : "the accelerations that load the bearings are not finite";
     return false;
   }

@@ -1,8 +1,8 @@
 // Deep trees: (7) by the equations of its bodies (body_matrix.h), whose entries grow like the
 // bodies, factorised by KLU (klu_solver.h). Pivots are not filtered, faded rows not known.
 
-#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
 
@@ -16,7 +16,7 @@ class BodyKkt final : public Kkt {
  public:
   BodyKkt(const Mechanism& mechanism, std::unique_ptr<BodyMatrix<Space>> equations)
       : equations_(std::move(equations)),
-        axis_scale_(mechanism.axis_scale()),
+        axis_scale_(mechanism),
         n_(mechanism.nv()),
         m_(mechanism.m()),
         inertia_(static_cast<std::size_t>(n_)),

@@ -4,9 +4,10 @@
 // M^(−1/2) vanishes, as small as any algorithm can make it: W squares the condition of σ, not of u.
 
 #include <momenta/dae/factor/axis_scale.h>
-#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_matrix.h>
+#include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ class DenseKkt final : public Kkt {
  public:
   explicit DenseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
-        axis_scale_(mechanism.axis_scale()),
+        axis_scale_(mechanism),
         diagonal_of_mass_(pattern_, mechanism.nv()),
         n_(mechanism.nv()),
         m_(mechanism.m()),
@@ -119,15 +120,11 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
   return std::make_unique<DenseKkt>(mechanism);
 }
 
-bool filters_pivots(const Mechanism& mechanism) {
-  return mechanism.dense_kkt() || mechanism.leaves_first();
-}
-
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
-  if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
-  if (mechanism.solved_by_bodies())
-    return mechanism.leaves_first() ? make_front_kkt(mechanism) : make_body_kkt(mechanism);
-  return mechanism.leaves_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
+  if (mechanism.solver().dense()) return make_dense_kkt(mechanism);
+  if (solved_by_bodies(mechanism))
+    return mechanism.solver().leaves_first() ? make_front_kkt(mechanism) : make_body_kkt(mechanism);
+  return mechanism.solver().leaves_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
 }
 
 }  // namespace momenta

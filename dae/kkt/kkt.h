@@ -58,9 +58,6 @@ class Kkt {
 /// the bodies' equations in deep trees, and KLU where joints have no inertia before their loops
 /// close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
-/// Whether the matrix of make_kkt() has a pivot for each row of Φ, which can fade and be reported:
-/// KLU has none.
-bool filters_pivots(const Mechanism& mechanism);
 /// For small systems: eliminates u along the tree, then factorises Φ_q M⁻¹ Φ_qᵀ, dense; O((nv +
 /// m)³).
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);

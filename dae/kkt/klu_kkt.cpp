@@ -29,7 +29,7 @@ class KluKkt final : public Kkt {
  public:
   explicit KluKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
-        axis_scale_(mechanism.axis_scale()),
+        axis_scale_(mechanism),
         diagonal_of_mass_(pattern_, mechanism.nv()),
         n_(mechanism.nv()),
         m_(mechanism.m()),

@@ -10,6 +10,7 @@
 // row fades, all give way to their multiplier instead: second row … = (σ − centre) · compliance.
 
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <memory>
 #include <vector>
@@ -77,7 +78,7 @@ std::unique_ptr<LoopSolver> make_assembled_solver(const Mechanism& mechanism,
 /// with m loop equations. `e` as for make_loop_solver.
 std::unique_ptr<LoopSolver> make_maximal_solver(const Mechanism& mechanism, Evaluation<double>& e);
 
-/// Solves by the sweeps that carry loops. @pre mechanism.looped_sweeps() exists.
+/// Solves by the sweeps that carry loops. @pre mechanism.solver().sweeps() exists.
 std::unique_ptr<LoopSolver> make_sweep_solver(const Mechanism& mechanism, Evaluation<double>& e);
 
 }  // namespace momenta

@@ -111,7 +111,7 @@ std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e
       inertia(static_cast<std::size_t>(mechanism.nv())), scale(mechanism.row_groups().size());
   e.constraint_entries(constraint.data());
   e.mass_diagonal(inertia.data());
-  mechanism.axis_scale().of_groups(inertia, constraint, scale);
+  AxisScale(mechanism).of_groups(inertia, constraint, scale);
   scale_idle_rows(scale);
   return scale;
 }

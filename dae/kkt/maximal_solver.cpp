@@ -33,7 +33,7 @@ class MaximalSolver final : public LoopSolver {
         rows_(loop_model_, w_),
         tree_(w_),
         loops_(mechanism),
-        axis_scale_(mechanism.axis_scale()),
+        axis_scale_(mechanism),
         n_(model_.bodies.size()),
         still_(static_cast<std::size_t>(model_.nv)),
         torque_(still_.size()),

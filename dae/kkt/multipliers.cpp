@@ -1,5 +1,6 @@
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/multipliers.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ UniqueMultipliers::UniqueMultipliers(const Mechanism& mechanism, Evaluation<doub
     : mechanism_(mechanism),
       e_(e),
       solver_(solver),
-      tells_(mechanism.kkt() == KktChoice::sweeps || filters_pivots(mechanism)),
+      tells_(mechanism.solver().kkt() == KktChoice::sweeps || mechanism.solver().filters_pivots()),
       centre_(static_cast<std::size_t>(mechanism.m())),
       moved_(centre_.size()),
       udot_(static_cast<std::size_t>(mechanism.nv())),

@@ -2,7 +2,7 @@
 // the sweeps, on a pattern analysed once.
 
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/leaves_first.h>
+#include <momenta/dae/kkt/leaves_first.h>
 
 #include <algorithm>
 #include <cmath>

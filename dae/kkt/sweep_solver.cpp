@@ -4,6 +4,7 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ class SweepSolver final : public LoopSolver {
   SweepSolver(const Mechanism& mechanism, Evaluation<double>& e)
       : mechanism_(mechanism),
         e_(e),
-        sweeps_(mechanism.looped_sweeps()),
+        sweeps_(mechanism.solver().sweeps()),
         carried_(mechanism.has_body_forces() && mechanism.plan().planar &&
                  !mechanism.has_forces_apart()),
         apart_(mechanism.has_body_forces() && !carried_),
@@ -32,7 +33,7 @@ class SweepSolver final : public LoopSolver {
   /// A compliance by row needs the rows of the loops as the scene pairs them.
   void soften(std::vector<double> compliance) override {
     compliance_ = std::move(compliance);
-    if (mechanism_.pairs_anew()) sweeps_ = mechanism_.looped_sweeps_as_given();
+    if (mechanism_.solver().pairs_anew()) sweeps_ = mechanism_.solver().sweeps_as_given();
   }
 
   bool momentum(double t, const double* q, const double* p, const double* centre, double fade,

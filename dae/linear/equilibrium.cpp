@@ -1,6 +1,7 @@
 #include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 #include <momenta/dae/linear/downward_ways.h>
 #include <momenta/dae/linear/equilibrium.h>
 #include <momenta/dae/linear/local_pencil.h>
@@ -119,7 +120,7 @@ class Searcher {
     p.q = q;
     if (!poses_.let_go(t, q, p.udot, p.lambda))
       throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot be let go: " +
-                       mechanism_.no_inertia(poses_.singular_joint(), t, q.data()));
+                       no_inertia(mechanism_, poses_.singular_joint(), t, q.data()));
     p.force.resize(mechanism_.nv());
     e_.place(t, q.data());
     e_.move(rest_.data());

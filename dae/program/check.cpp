@@ -5,6 +5,7 @@
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/passed_limits.h>
 
 #include <algorithm>
@@ -85,7 +86,7 @@ void print_limits(const Checked& c) {
 
 void print_plan(const Checked& c) {
   std::printf("\nPlan\n");
-  for (const auto& [what, how] : c.mechanism.plan_lines())
+  for (const auto& [what, how] : plan_lines(c.mechanism))
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
   if (c.bodies) {
     const Recut cuts = recut(c.mechanism, c.assembly.start);

@@ -5,6 +5,7 @@
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <cstdio>
 #include <map>
@@ -206,7 +207,7 @@ nlohmann::ordered_json check_json(const Checked& c) {
                    {"branch", c.assembly.branch},
                    {"residue", c.assembly.residue},
                    {"rates", replaced_rates_in_words(c.mechanism, c.assembly.start)}};
-  for (const auto& [what, how] : c.mechanism.plan_lines()) j["plan"][what] = how;
+  for (const auto& [what, how] : plan_lines(c.mechanism)) j["plan"][what] = how;
   if (c.bodies && c.mechanism.m() == 0) {
     const auto counted = [&](Recursion recursion) {
       const Operations n =

@@ -3,6 +3,7 @@
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/text/utf8.h>
 #include <momenta/dae/assembly/start_accelerations.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>
@@ -38,7 +39,7 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
     std::fprintf(stderr, "momenta: %s: %s\n", o.scene.c_str(), rates.c_str());
   study.scene_hash = digest(content_of(o.scene));
   study.command = o.command;
-  study.plan = mechanism.plan_lines();
+  study.plan = plan_lines(mechanism);
   if (!study.runs.empty() && !study.runs.front().integrated.empty())
     study.plan.emplace_back("integrated", study.runs.front().integrated);
   if (!o.out.empty()) show(study, o, mechanism, assembly);

@@ -8,6 +8,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -79,8 +80,8 @@ class Bench {
     if (!found_finite(failure, found...)) throw SceneError(failure);
   }
   [[noreturn]] void fail(double t, const In& q) const {
-    throw SceneError(mechanism->no_inertia(solver ? solver->singular_joint() : e->singular_joint(),
-                                           t, q.data()));
+    throw SceneError(momenta::no_inertia(
+        *mechanism, solver ? solver->singular_joint() : e->singular_joint(), t, q.data()));
   }
 
   std::string algebra, kkt, cut;

@@ -4,7 +4,8 @@
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
-#include <momenta/dae/body_matrix.h>
+#include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>
@@ -188,7 +189,7 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
 
 py::dict plan(const Bench& b) {
   py::dict lines;
-  for (const auto& [name, text] : b.mechanism->plan_lines()) lines[name.c_str()] = text;
+  for (const auto& [name, text] : plan_lines(*b.mechanism)) lines[name.c_str()] = text;
   return lines;
 }
 

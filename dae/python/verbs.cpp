@@ -5,6 +5,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/report/index_report.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
@@ -73,7 +74,7 @@ std::string page(const Bench& b, const std::string& file) {
   StudyResult study;
   study.scene = mechanism.scene().name;
   study.scene_file = file;
-  study.plan = mechanism.plan_lines();
+  study.plan = plan_lines(mechanism);
   study.environment = environment();
   show(study, mechanism, assembly);
   return view_page(study, still_words(mechanism, assembly));

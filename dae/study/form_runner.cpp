@@ -1,5 +1,6 @@
 #include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/event/scene_inputs.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/form_runner.h>
@@ -77,7 +78,7 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
   s.beta = form_->beta();
   s.penalty = form_->penalty();
-  s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.kkt());
+  s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.solver().kkt());
   if (method.step == Integrator::Step::adaptive) s.step = 0;
   integrator_ = s.integrator;
   options_.rtol = s.rtol;

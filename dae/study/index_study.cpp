@@ -1,6 +1,6 @@
-#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/study/index_study.h>
 

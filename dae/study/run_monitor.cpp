@@ -1,3 +1,5 @@
+#include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/study/run_monitor.h>
 #include <momenta/dae/study/run_quantities.h>
@@ -50,7 +52,7 @@ RunMonitor::RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene,
     errors_.measure_own(form);
   }
   if (integrated.m() > 0 && !stops &&
-      (integrated.kkt() == KktChoice::sweeps || filters_pivots(integrated)))
+      (integrated.solver().kkt() == KktChoice::sweeps || integrated.solver().filters_pivots()))
     singular_crossings_.emplace(integrated, form, written_ ? *integrated_e_ : *e_,
                                 written_ ? *integrated_solver_ : *solver_, result);
   const bool looks = request.events && !mechanism.scene().events.empty();
@@ -97,7 +99,7 @@ bool RunMonitor::sample(double t, const double* y, const double* ydot) {
       trouble_ += ": " + dae->failure();
     else if (!written_ && by_mass_alone &&
              !e_->open_momentum_rates(t, y, none.data(), u.data(), pdot.data()))
-      trouble_ += ": " + mechanism_.no_inertia(e_->singular_joint(), t, y);
+      trouble_ += ": " + no_inertia(mechanism_, e_->singular_joint(), t, y);
     else if (const OdeSystem* ode = form_->ode(); ode && !ode->failure().empty())
       trouble_ = ode->failure();
     return false;

@@ -1,10 +1,10 @@
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/dae/body_matrix.h>
-#include <momenta/dae/factor/tree_factor.h>
+#include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/state_values.h>
-#include <momenta/dae/unheld_joints.h>
+#include <momenta/dae/tree_factor.h>
 
 #include <cmath>
 #include <limits>
@@ -74,10 +74,10 @@ class StateEvaluator {
   void leave_out(int rate) {
     unheld_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), true, rate);
     if (!unheld_.joints.empty())
-      s_.not_there =
-          mechanism_.scene().lagrangian
-              ? mechanism_.no_inertia(unheld_.joints.front().rate, given_.t, given_.q.data())
-              : in_words(mechanism_, unheld_);
+      s_.not_there = mechanism_.scene().lagrangian
+                         ? momenta::no_inertia(mechanism_, unheld_.joints.front().rate, given_.t,
+                                               given_.q.data())
+                         : in_words(mechanism_, unheld_);
     else if (rate < 0)
       refuse();
   }

@@ -8,6 +8,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include "equations/linkages.h"
 #include "equations/quad_loops.h"
@@ -84,8 +85,8 @@ void time_row(benchmark::State& state, Row row) {
     i = 0;  // leaves the rates of the first state
     one();
   };
-  if (mechanism.kkt() == KktChoice::sweeps) {
-    const auto sweeps = mechanism.looped_sweeps(row.level, row.branches_side_by_side);
+  if (mechanism.solver().kkt() == KktChoice::sweeps) {
+    const auto sweeps = mechanism.solver().sweeps(row.level, row.branches_side_by_side);
     RightSide<double> right;
     right.centre = s.centre.data();
     right.fade = fade_evaluation;
@@ -125,7 +126,7 @@ void time_row(benchmark::State& state, Row row) {
 void evaluate_batch(benchmark::State& state, Row row) {
   const Mechanism mechanism(row.model(static_cast<int>(state.range(0))), {row.algebra, row.kkt});
   const States16 s(mechanism);
-  const auto sweeps = mechanism.looped_sweeps(row.level);
+  const auto sweeps = mechanism.solver().sweeps(row.level);
   const auto nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
   using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const bool momentum = std::string(row.form) == "momentum";

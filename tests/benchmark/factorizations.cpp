@@ -3,14 +3,14 @@
 // the factors, and how far u is from that of the sweeps.
 //
 //   joints   M and Φ_q                                     (kkt_pattern of the mechanism)
-//   bodies   Ω, u, P*, σ of every body                     (dae/body_matrix.h)
+//   bodies   Ω, u, P*, σ of every body                     (dae/kkt/body_matrix.h)
 //
 // CHOLMOD does not pivot: ±δ of the scale stands on the diagonal where it is zero, and its errors
 // are those of δ after one refinement of the equations without it.
 //
 // Usage: momenta_factorizations [MOST]   mechanisms of at most so many cells or pairs; 1000
 
-#include <momenta/dae/body_matrix.h>
+#include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/loop_units.h>

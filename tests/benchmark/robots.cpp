@@ -9,6 +9,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include "nanoseconds.h"
 #include "robot_files.h"
@@ -61,9 +62,9 @@ void time_loops(benchmark::State& state, const Scene& scene, bool momentum) {
     benchmark::DoNotOptimize(rate.data());
   }
   if (!ok) return state.SkipWithError("no solution");
-  const char* by = mechanism.kkt() == KktChoice::sweeps  ? "sweeps"
-                   : mechanism.kkt() == KktChoice::dense ? "dense"
-                                                         : "sparse";
+  const char* by = mechanism.solver().kkt() == KktChoice::sweeps  ? "sweeps"
+                   : mechanism.solver().kkt() == KktChoice::dense ? "dense"
+                                                                  : "sparse";
   finish(state, std::to_string(mechanism.nv()) + " rates, " + std::to_string(mechanism.m()) +
                     " equations, " + by);
 }

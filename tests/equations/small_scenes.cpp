@@ -5,6 +5,7 @@
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
@@ -180,7 +181,7 @@ Tried try_scene(const Scene& scene, const std::string& form) {
     if (!assembly.start.q.allFinite() || !assembly.start.u.allFinite())
       return {"assembled to what is not finite"};
     if (m > 0 && rank_report(mechanism, assembly.start).rank > m) return {"rank above m"};
-    mechanism.plan_lines();
+    plan_lines(mechanism);
     RunRequest request;
     request.settings.form = form;
     request.settings.integrator = "";

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/Dense>
@@ -54,9 +55,9 @@ void compare(const Scene& scene, RandomTree& random, const MechanismOptions& opt
   const Conditions c = conditions(twin, *e);
   if (!(c.of_loops < 100)) return;
   const Mechanism mechanism(scene, options);
-  if (mechanism.kkt() != KktChoice::sweeps) return;
+  if (mechanism.solver().kkt() != KktChoice::sweeps) return;
   ++worst.tried;
-  worst.anew += mechanism.pairs_anew();
+  worst.anew += mechanism.solver().pairs_anew();
   VectorXd p(twin.nv()), centre(twin.m());
   for (double& x : p) x = random.uniform(-2, 2);
   for (double& x : centre) x = random.uniform(-2, 2);
@@ -111,7 +112,7 @@ int compare_batches(const Mechanism& mechanism, RandomTree& random, int count) {
   right.rates = true;
   for (const int level : {1, 3, 4}) {
     if (level_at_most(level) != level) continue;
-    const auto sweeps = mechanism.looped_sweeps(level);
+    const auto sweeps = mechanism.solver().sweeps(level);
     EXPECT_TRUE(sweeps->momentum(0,
                                  {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,
                                   static_cast<std::size_t>(count)},

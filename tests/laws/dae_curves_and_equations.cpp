@@ -5,6 +5,7 @@
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <numbers>
@@ -125,7 +126,7 @@ TEST(Slots, OnCirclesAreDistances) {
       scene_of(arms + loop("L", ends + "kind = \"slot\"\ncurve = \"circle\"\nradius = 0.45"));
   const Scene distance = scene_of(arms + loop("L", ends + "kind = \"distance\"\nlength = 0.45"));
   const Mechanism one(slot), other(distance);
-  EXPECT_EQ(one.kkt(), KktChoice::sweeps);
+  EXPECT_EQ(one.solver().kkt(), KktChoice::sweeps);
   const RunResult first = run_of(one, "momentum", 1), second = run_of(other, "momentum", 1);
   EXPECT_EQ(first.trajectory.rows, second.trajectory.rows);
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -174,8 +175,8 @@ Scene with_coupler(double factor) {
 TEST(Dust, LoopsOfLightAndHeavyLinksAreLeftToKlu) {
   for (const double sign : {-1.0, 1.0}) {
     const Mechanism limit(with_coupler(std::pow(10, sign * 5)));
-    EXPECT_TRUE(limit.leaves_first());
-    EXPECT_EQ(limit.kkt(), KktChoice::sweeps);
+    EXPECT_TRUE(limit.solver().leaves_first());
+    EXPECT_EQ(limit.solver().kkt(), KktChoice::sweeps);
     const double angle = two_seconds(limit, "momentum").trajectory.rows.back()[1];
     for (const int power : {9, 10, 12}) {
       const Scene scene = with_coupler(std::pow(10, sign * power));
@@ -187,9 +188,9 @@ TEST(Dust, LoopsOfLightAndHeavyLinksAreLeftToKlu) {
         EXPECT_TRUE(r.undetermined.empty()) << form;
       }
       if (power == 9) continue;
-      EXPECT_FALSE(mechanism.leaves_first());
-      EXPECT_EQ(mechanism.kkt(), KktChoice::sparse);
-      const auto lines = mechanism.plan_lines();
+      EXPECT_FALSE(mechanism.solver().leaves_first());
+      EXPECT_EQ(mechanism.solver().kkt(), KktChoice::sparse);
+      const auto lines = plan_lines(mechanism);
       EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const auto& line) {
         return line.second.find("before their loops miss (7) by") != std::string::npos &&
                line.second.find("times lighter than") != std::string::npos;

@@ -13,6 +13,7 @@
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/written_motion.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
@@ -164,10 +165,11 @@ TEST(IntegratedScene, TheOrderOfTreesDoesNotMatter) {
       const Start start = assemble(written).start;
       const IntegratedScene integrated(written, start);
       const Mechanism good(scene);
-      EXPECT_EQ(integrated.mechanism().kkt(), KktChoice::sweeps) << scene.name << " " << seed;
+      EXPECT_EQ(integrated.mechanism().solver().kkt(), KktChoice::sweeps)
+          << scene.name << " " << seed;
       EXPECT_LE(cut_cost(integrated.mechanism()).work, cut_cost(good).work)
           << scene.name << " " << seed;
-      carried_anew += written.kkt() != KktChoice::sweeps;
+      carried_anew += written.solver().kkt() != KktChoice::sweeps;
       const Mechanism kept(written.scene(), {.cut = CutChoice::scene});
       expect_same(run_of(written, start, "momentum", 0.1, 1e-10),
                   run_of(kept, start, "momentum", 0.1, 1e-10), 1e-6, 1e-7, scene.name);
@@ -178,16 +180,16 @@ TEST(IntegratedScene, TheOrderOfTreesDoesNotMatter) {
 /// A band cut across has as many loops open as it is long; along it, two.
 TEST(IntegratedScene, ALadderCutAcrossIsCarriedBySweeps) {
   const Mechanism written(bars_cut_in_the_middle(60));
-  EXPECT_NE(written.kkt(), KktChoice::sweeps);
+  EXPECT_NE(written.solver().kkt(), KktChoice::sweeps);
   const Start start = assemble(written).start;
   const IntegratedScene integrated(written, start);
-  EXPECT_EQ(integrated.mechanism().kkt(), KktChoice::sweeps);
+  EXPECT_EQ(integrated.mechanism().solver().kkt(), KktChoice::sweeps);
   EXPECT_LE(cut_cost(integrated.mechanism()).work, cut_cost(Mechanism(crossed_bars(60))).work);
 }
 
 TEST(IntegratedScene, BranchesOfOneShapeGoSideBySideHoweverTheirLoopsAreWritten) {
   const auto how = [](const Mechanism& mechanism) {
-    for (const auto& [what, words] : mechanism.plan_lines())
+    for (const auto& [what, words] : plan_lines(mechanism))
       if (what == "solving (7)") return words;
     return std::string();
   };

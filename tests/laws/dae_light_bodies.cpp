@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/kkt/leaves_first.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/leaves_first.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <cmath>
 #include <numbers>
@@ -108,7 +109,7 @@ int swept_of(const Scene& scene) {
       other.bodies[body].mass *= std::pow(10, power);
       other.bodies[body].inertia *= std::pow(10, power);
       const Mechanism mechanism(other);
-      if (mechanism.kkt() != KktChoice::sweeps) {
+      if (mechanism.solver().kkt() != KktChoice::sweeps) {
         EXPECT_NE(power, 0);
         continue;
       }
@@ -180,7 +181,7 @@ Scene ladder_on_a_slide(int pairs, double foot) {
 TEST(LightBodies, ALightSlideUnderALadderIsSwept) {
   for (const double foot : {0.2, 2e5}) {
     const Mechanism mechanism(ladder_on_a_slide(200, foot));
-    ASSERT_EQ(mechanism.kkt(), KktChoice::sweeps) << foot;
+    ASSERT_EQ(mechanism.solver().kkt(), KktChoice::sweeps) << foot;
     const Off off = error_of(mechanism);
     EXPECT_LT(off.error, off.allowed) << foot;
   }

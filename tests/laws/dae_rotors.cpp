@@ -11,6 +11,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <filesystem>
@@ -105,7 +106,7 @@ TEST(Rotors, AndDependentRowsLeaveCassieToTheSweeps) {
                                  "examples/models/agility_cassie/cassie.xml");
   EXPECT_EQ(scene.bodies.size(), 25U);  // no body stands for a rotor
   const Mechanism mechanism(scene);
-  EXPECT_EQ(mechanism.kkt(), KktChoice::sweeps);
+  EXPECT_EQ(mechanism.solver().kkt(), KktChoice::sweeps);
   const Mechanism sparse(scene, {.kkt = KktChoice::sparse});
   const VectorXd p = VectorXd::LinSpaced(mechanism.nv(), -1, 1);
   const auto rates = [&](const Mechanism& m) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/solver/integration.h>
 
 #include <cstdio>
@@ -91,7 +92,7 @@ TEST(SingularRuns, RowOfFourBarsThroughItsFlatPoses) {
   const double exact = row_angle(n, std::numbers::pi / 2, -1);
   for (const double angle : {0.0, 0.7}) {
     const Mechanism mechanism(turned_by(row_of_four_bars(n, std::numbers::pi / 2, -1), angle));
-    ASSERT_EQ(mechanism.kkt(), KktChoice::sweeps);
+    ASSERT_EQ(mechanism.solver().kkt(), KktChoice::sweeps);
     std::vector<double> errors, energies;
     for (const Start& start : starts_of(mechanism)) {
       const double h = 0.6e-3 + static_cast<double>(errors.size()) * 0.6e-3 / 19;
@@ -126,7 +127,7 @@ TEST(SingularRuns, BricardAlwaysRedundant) {
     Scene scene = bricard();
     if (is_turned) scene = turned(scene, random.turn());
     const Mechanism mechanism(scene);
-    ASSERT_EQ(mechanism.kkt(), KktChoice::sweeps);
+    ASSERT_EQ(mechanism.solver().kkt(), KktChoice::sweeps);
     std::vector<double> drifts, energies;
     for (const Start& start : starts_of(mechanism, 10)) {
       const Outcome run = ten_seconds(mechanism, start, 5e-4, 30, false);

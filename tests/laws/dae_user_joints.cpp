@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/study/quad_motion.h>
 #include <momenta/dae/study/run_form.h>
@@ -97,11 +98,11 @@ void at_states(const Mechanism& mechanism, F&& f) {
 TEST(UserJointsInLoops, AnswerAsBuiltInJointsDo) {
   for (const Pair& pair : pairs()) {
     ClosedChain reference(pair.built_in, {.algebra = Algebra::spatial});
-    ASSERT_EQ(reference.mechanism().kkt(), KktChoice::sweeps);
+    ASSERT_EQ(reference.mechanism().solver().kkt(), KktChoice::sweeps);
     for (const KktChoice kkt : {KktChoice::sweeps, KktChoice::sparse, KktChoice::dense}) {
       ClosedChain chain(pair.user, {.kkt = kkt});
       ASSERT_EQ(chain.nv(), reference.nv());
-      ASSERT_EQ(chain.mechanism().kkt(), kkt);
+      ASSERT_EQ(chain.mechanism().solver().kkt(), kkt);
       at_states(reference.mechanism(), [&](double t, const VectorXd& q, const VectorXd& u) {
         const Answers x(chain, t, q, u), y(reference, t, q, u);
         expect_same(x, y, pair.name + " by " + name_of(kkt));
@@ -214,7 +215,7 @@ TEST(UserJointsInLoops, OneStepOfFixedSizeIsTheSameToRounding) {
 TEST(UserJointsInLoops, PinOnACurve) {
   const Mechanism mine(slider_on_user_curve(), {.cut = as_written}),
       theirs(slider_on_curve(), {.cut = as_written});
-  ASSERT_EQ(mine.kkt(), KktChoice::sweeps);
+  ASSERT_EQ(mine.solver().kkt(), KktChoice::sweeps);
   ASSERT_EQ(mine.m(), 3);
   ASSERT_EQ(theirs.m(), 6);
   // The marker's column, which both have.

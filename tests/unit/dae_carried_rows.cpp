@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <filesystem>
 
@@ -44,7 +45,7 @@ TEST(CarriedRows, OfAPlanarCycleInSpaceAreTwo) {
   const Mechanism swept(four_bar(), {.algebra = Algebra::spatial, .kkt = KktChoice::sweeps}),
       dense(four_bar(), {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
   ASSERT_EQ(swept.m(), 5);
-  EXPECT_LE(swept.looped_sweeps()->slots(), 4);
+  EXPECT_LE(swept.solver().sweeps()->slots(), 4);
   const VectorXd q = start_of(swept).q;
   VectorXd p(3), centre(5);
   p << 0.3, -0.2, 0.1;
@@ -112,7 +113,7 @@ TEST(CarriedRows, OfALinkageThatFliesAreTwo) {
     }
     const Mechanism swept(scene, {.kkt = KktChoice::sweeps}),
         dense(scene, {.kkt = KktChoice::dense});
-    EXPECT_LE(swept.looped_sweeps()->slots(), 4);
+    EXPECT_LE(swept.solver().sweeps()->slots(), 4);
     const Start start = start_of(swept);
     const VectorXd p = VectorXd::LinSpaced(swept.nv(), -1, 1), none = VectorXd::Zero(5);
     const Solved a = solve(swept, start.q, p, none), b = solve(dense, start.q, p, none);
@@ -124,7 +125,7 @@ TEST(CarriedRows, OfALinkageThatFliesAreTwo) {
 
 TEST(CarriedRows, OfACycleOutOfThePlaneAreAll) {
   const Mechanism bricard_loop(bricard(), {.kkt = KktChoice::sweeps});
-  EXPECT_GT(bricard_loop.looped_sweeps()->slots(), 4);
+  EXPECT_GT(bricard_loop.solver().sweeps()->slots(), 4);
 }
 
 }  // namespace

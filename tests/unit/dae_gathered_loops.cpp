@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/model.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
@@ -107,7 +108,7 @@ TEST(GatheredLoops, BatchesAgree) {
     scene.forces.clear();
     if (scene.loops.empty() || !gathers(scene)) continue;
     const Mechanism mechanism(scene);
-    if (mechanism.m() > mechanism.nv() || mechanism.kkt() != KktChoice::sweeps) continue;
+    if (mechanism.m() > mechanism.nv() || mechanism.solver().kkt() != KktChoice::sweeps) continue;
     compared += compare_batches(mechanism, random, 9);
   }
   EXPECT_GT(compared, 150);

@@ -11,9 +11,10 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/body_matrix.h>
+#include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <Eigen/Dense>
 
@@ -306,7 +307,7 @@ TEST(Kkt, NearlyFlatRowInSpace) {
 TEST(Kkt, LongRowsSparseAgreesWithDense) {
   for (const int n : {5, 20, 40}) {
     const Mechanism mechanism(row_of_four_bars(n, 1.1, 1));
-    EXPECT_EQ(mechanism.dense_kkt(), 4 * n + 1 <= 60);
+    EXPECT_EQ(mechanism.solver().dense(), 4 * n + 1 <= 60);
     const auto e = mechanism.evaluation<double>();
     const auto dense = make_dense_kkt(mechanism), sparse = make_sparse_kkt(mechanism);
     RandomTree random(1);
@@ -329,8 +330,8 @@ TEST(Kkt, DeepTreesAreSolvedByTheirBodies) {
   for (const Scene& scene : {crossed_bars(60), arch(120)}) {
     const Mechanism by_sweeps(scene), by_bodies(scene, {.kkt = KktChoice::sparse}),
         in_space(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::sparse});
-    ASSERT_TRUE(by_bodies.solved_by_bodies());
-    ASSERT_EQ(by_sweeps.kkt(), KktChoice::sweeps);
+    ASSERT_TRUE(solved_by_bodies(by_bodies));
+    ASSERT_EQ(by_sweeps.solver().kkt(), KktChoice::sweeps);
     const auto e = by_sweeps.evaluation<double>(), f = by_bodies.evaluation<double>(),
                g = in_space.evaluation<double>();
     const auto sweeps = make_loop_solver(by_sweeps, *e), bodies = make_loop_solver(by_bodies, *f),

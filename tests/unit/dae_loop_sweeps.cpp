@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/model.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <Eigen/Dense>
 
@@ -257,7 +258,7 @@ TEST(LoopSweeps, LevelsAndBatchesAgree) {
       if (!gear.joints.empty()) scene.loops.push_back(gear);
     }
     const Mechanism mechanism(scene);
-    if (mechanism.m() == 0 || mechanism.kkt() != KktChoice::sweeps) continue;
+    if (mechanism.m() == 0 || mechanism.solver().kkt() != KktChoice::sweeps) continue;
     compared += compare_batches(mechanism, random, 11);
   }
   EXPECT_GT(compared, 200);
@@ -291,7 +292,7 @@ TEST(LoopSweeps, BatchesOfEveryLoop) {
       if (seed % 3 > 0) scene.loops.push_back(random_loop(random, scene, LoopKind::distance));
     }
     const Mechanism mechanism(scene);
-    if (mechanism.m() > mechanism.nv() || mechanism.kkt() != KktChoice::sweeps) continue;
+    if (mechanism.m() > mechanism.nv() || mechanism.solver().kkt() != KktChoice::sweeps) continue;
     (in_plane ? planar : spatial) += compare_batches(mechanism, random, 9);
   }
   const auto levels = static_cast<int>(equations::levels().size());
@@ -303,8 +304,8 @@ TEST(LoopSweeps, BatchesOfEveryLoop) {
 TEST(LoopSweeps, AreRefusedWhereThereAreNone) {
   Scene open = row_of_four_bars(1, 0.5);
   open.loops.clear();
-  EXPECT_THROW(Mechanism(open).looped_sweeps(), std::logic_error);
-  EXPECT_THROW(Mechanism(open).looped_sweeps_as_given(), std::logic_error);
+  EXPECT_THROW(Mechanism(open).solver().sweeps(), std::logic_error);
+  EXPECT_THROW(Mechanism(open).solver().sweeps_as_given(), std::logic_error);
 }
 
 /// Records of a pack beyond the cache: the batch takes the states one by one, to the last bit.
@@ -318,7 +319,7 @@ TEST(LoopSweeps, LargeBatchesGoStateByState) {
   VectorXd p(nv), u(nv), pdot(nv), sigma(m), u1(nv), pdot1(nv), sigma1(m);
   for (double& x : p) x = random.uniform(-2, 2);
   ASSERT_EQ(q.size(), nq);
-  const auto sweeps = mechanism.looped_sweeps();
+  const auto sweeps = mechanism.solver().sweeps();
   RightSide<double> right;
   right.fade = fade_evaluation;
   right.leak = 0.5;
@@ -385,16 +386,16 @@ TEST(LoopSweeps, PlanSaysWhatItCannotCarry) {
     scene.loops.push_back(l);
   }
   const Mechanism fallen(scene);
-  EXPECT_EQ(fallen.kkt(), KktChoice::sparse);
+  EXPECT_EQ(fallen.solver().kkt(), KktChoice::sparse);
   EXPECT_THROW(Mechanism(scene, {.kkt = KktChoice::sweeps}), SceneError);
   // A joint without inertia until its loop closes.
   Scene light = row_of_four_bars(1, 1.1);
   light.bodies[1].mass = 0;
   light.bodies[1].inertia.setZero();
   const Mechanism massless(light);
-  EXPECT_EQ(massless.kkt(), KktChoice::sparse);
+  EXPECT_EQ(massless.solver().kkt(), KktChoice::sparse);
   std::string said;
-  for (const auto& [what, how] : massless.plan_lines()) said += what + ": " + how + "\n";
+  for (const auto& [what, how] : plan_lines(massless)) said += what + ": " + how + "\n";
   EXPECT_NE(said.find("has no inertia before its loops close"), std::string::npos) << said;
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
@@ -115,7 +116,7 @@ const std::vector<std::vector<LegRecipe>> recipes{
 };
 
 std::string said_of_solving(const Mechanism& mechanism) {
-  for (const auto& [what, how] : mechanism.plan_lines())
+  for (const auto& [what, how] : plan_lines(mechanism))
     if (what == "solving (7)") return how;
   return "";
 }
@@ -188,8 +189,8 @@ TEST(LoopedBranches, SideBySideAreWhatTheyAreOneByOne) {
       for (double& x : centre) x = random.uniform(-2, 2);
       const LoopedRates exact = quad_rates(mechanism, s.q, p, s.u, leak, fade_evaluation);
       for (Level& level : levels) {
-        const auto beside = mechanism.looped_sweeps(level.number),
-                   apart = mechanism.looped_sweeps(level.number, false);
+        const auto beside = mechanism.solver().sweeps(level.number),
+                   apart = mechanism.solver().sweeps(level.number, false);
         const double one_by_one = error_of(*apart, mechanism, s, p, exact, leak),
                      together = error_of(*beside, mechanism, s, p, exact, leak);
         if (apart->weak_looped_branch()) {
@@ -270,9 +271,9 @@ TEST(LoopedBranches, SingularJointIsTheOneThatIs) {
       b.inertia.setZero();
     }
   const Mechanism mechanism(scene);
-  EXPECT_EQ(mechanism.kkt(), KktChoice::sparse);
+  EXPECT_EQ(mechanism.solver().kkt(), KktChoice::sparse);
   std::string said;
-  for (const auto& [what, how] : mechanism.plan_lines()) said += how + "\n";
+  for (const auto& [what, how] : plan_lines(mechanism)) said += how + "\n";
   EXPECT_NE(said.find("'S3' has no inertia before its loops close"), std::string::npos) << said;
 }
 

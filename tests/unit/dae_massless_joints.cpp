@@ -11,10 +11,11 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/body_matrix.h>
+#include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/kkt/unheld_joints.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/state_values.h>
-#include <momenta/dae/unheld_joints.h>
 
 #include <Eigen/SVD>
 #include <filesystem>
@@ -471,8 +472,8 @@ TEST(MasslessJoints, RoundingIsNoInertiaBeforeLoopsClose) {
     scene.loops.push_back(held);
     const Mechanism mechanism(scene);
     EXPECT_TRUE(mechanism.plan().planar);
-    EXPECT_EQ(mechanism.kkt(), KktChoice::sparse) << seed;
-    EXPECT_FALSE(mechanism.leaves_first());
+    EXPECT_EQ(mechanism.solver().kkt(), KktChoice::sparse) << seed;
+    EXPECT_FALSE(mechanism.solver().leaves_first());
     // The frame is held, and the arm with it: the mass alone moves, and falls.
     const Start start = assemble(mechanism).start;
     EXPECT_EQ(start.udot.size(), 5);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/multipliers.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/chart.h>
 #include <momenta/dae/report/json.h>
@@ -81,7 +82,7 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
         const Start start = equations::start_of(mechanism);
         const auto found = unique_by_centres(mechanism, start);
         EXPECT_EQ(found, unique_by_singular_values(mechanism, start.t, start.q))
-            << scene.name << " " << static_cast<int>(algebra) << name_of(mechanism.kkt());
+            << scene.name << " " << static_cast<int>(algebra) << name_of(mechanism.solver().kkt());
         const auto unique = std::count(found.begin(), found.end(), true);
         shared += unique == 0;
         determined += unique == mechanism.m();
@@ -92,7 +93,7 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
   light.bodies[1].mass *= 1e-12;
   light.bodies[1].inertia *= 1e-12;
   const Mechanism by_klu(light);
-  ASSERT_FALSE(filters_pivots(by_klu));
+  ASSERT_FALSE(by_klu.solver().filters_pivots());
   const Start start = equations::start_of(by_klu);
   EXPECT_EQ(unique_by_centres(by_klu, start), unique_by_singular_values(by_klu, start.t, start.q));
   EXPECT_GE(shared, 10);

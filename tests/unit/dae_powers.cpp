@@ -7,6 +7,7 @@
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/run_form.h>
 
 namespace momenta::dae_powers {
@@ -66,7 +67,7 @@ double polynomial(const VectorXd& q) {
 TEST(Powers, RowsAgainstTheirPolynomial) {
   for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
     const Mechanism mechanism(coupled(), {.algebra = algebra});
-    EXPECT_NE(mechanism.kkt(), KktChoice::sweeps);
+    EXPECT_NE(mechanism.solver().kkt(), KktChoice::sweeps);
     const auto e = mechanism.evaluation<double>();
     equations::RandomTree random(1);
     constexpr double h = 1e-5;
@@ -154,7 +155,7 @@ TEST(Powers, ForcesOfAllKindsBalance) {
     VectorXd first;
     for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
       const Mechanism mechanism(scene, {.algebra = algebra});
-      EXPECT_EQ(mechanism.kkt() == KktChoice::sweeps, !powers);
+      EXPECT_EQ(mechanism.solver().kkt() == KktChoice::sweeps, !powers);
       const Start start = assemble(mechanism).start;
       for (const char* form : {"momentum", "projected", "stabilised-index2", "momentum-index2"}) {
         SCOPED_TRACE(form);

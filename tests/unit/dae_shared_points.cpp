@@ -5,6 +5,7 @@
 #include "equations/sweeps_against_matrix.h"
 
 #include <gtest/gtest.h>
+#include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/loop/shared_points.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
@@ -119,10 +120,10 @@ TEST(SharedPoints, AStarTakesTheSlotsOfAPath) {
     star.loops.push_back(l);
   }
   const Mechanism mechanism(star);
-  EXPECT_TRUE(mechanism.pairs_anew());
-  EXPECT_EQ(mechanism.looped_sweeps()->slots(), 4);
-  EXPECT_EQ(mechanism.looped_sweeps_as_given()->slots(), 16);
-  const auto lines = mechanism.plan_lines();
+  EXPECT_TRUE(mechanism.solver().pairs_anew());
+  EXPECT_EQ(mechanism.solver().sweeps()->slots(), 4);
+  EXPECT_EQ(mechanism.solver().sweeps_as_given()->slots(), 16);
+  const auto lines = plan_lines(mechanism);
   EXPECT_NE(lines.back().second.find("paired along the tree"), std::string::npos);
 }
 

@@ -36,7 +36,7 @@ struct LoopedStates {
 };
 
 /// The sweeps that carry the loops of one mechanism, with their workspace: one object per thread.
-/// Made by Mechanism::looped_sweeps().
+/// Made by SolverChoice::sweeps().
 class LoopedSweeps {
  public:
   virtual ~LoopedSweeps() = default;
@@ -47,7 +47,7 @@ class LoopedSweeps {
   virtual bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                         double* u, double* sigma, double* pdot) = 0;
   /// u̇ (nv) and λ (m) of (3) from u and the generalised forces τ (nv), weights excluded. @pre No
-  /// compliance where loops are paired anew (Mechanism::pairs_anew), here and in momentum().
+  /// compliance where loops are paired anew (SolverChoice::pairs_anew), here and in momentum().
   virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
                             const RightSide<double>& right, double* udot, double* lambda) = 0;
   /// momentum() with rates for many states, `width()` at a time, with centre zero. False when a

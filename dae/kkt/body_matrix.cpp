@@ -1,4 +1,4 @@
-#include <momenta/dae/body_matrix.h>
+#include <momenta/dae/kkt/body_matrix.h>
 
 namespace momenta {
 

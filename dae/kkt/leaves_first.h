@@ -32,7 +32,7 @@ class LeavesFirstMatrix {
 
 std::unique_ptr<LeavesFirstMatrix> joint_matrix(const Mechanism& mechanism);
 std::unique_ptr<LeavesFirstMatrix> front_matrix(const Mechanism& mechanism);
-/// The matrix that Mechanism::solved_by_bodies() asks for.
+/// The one of them that solved_by_bodies() asks for.
 std::unique_ptr<LeavesFirstMatrix> leaves_first_matrix(const Mechanism& mechanism);
 
 // Error of eliminating every joint before the loops that hold it. Where a joint moves next to no

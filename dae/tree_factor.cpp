@@ -1,4 +1,4 @@
-#include <momenta/dae/factor/tree_factor.h>
+#include <momenta/dae/tree_factor.h>
 
 #include <algorithm>
 #include <limits>

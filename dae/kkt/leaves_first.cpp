@@ -1,10 +1,10 @@
-#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/factor/body_fronts.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/factor/filtered_factor.h>
-#include <momenta/dae/factor/filtered_matrix.h>
-#include <momenta/dae/leaves_first.h>
+#include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/leaves_first.h>
+#include <momenta/dae/kkt/solver_choice.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,23 +18,31 @@ namespace {
 class OfJoints final : public LeavesFirstMatrix {
  public:
   explicit OfJoints(const Mechanism& mechanism)
-      : matrix_(mechanism.kkt_pattern(), mechanism.axis_scale(), mechanism.nv(),
-                mechanism.row_groups()) {}
+      : scale_(mechanism),
+        diagonal_of_mass_(mechanism.kkt_pattern(), mechanism.nv()),
+        factor_(mechanism.kkt_pattern(), mechanism.nv(), mechanism.row_groups()),
+        mass_(mechanism.kkt_pattern().mass.size()),
+        constraint_(mechanism.kkt_pattern().constraint.size()),
+        tau_(static_cast<std::size_t>(mechanism.m())) {}
 
   bool factor(Evaluation<double>& e, double, const double*, const double* compliance,
               double fade) override {
-    e.mass_entries(matrix_.mass());
-    e.constraint_entries(matrix_.constraint());
-    return matrix_.factor(compliance, fade);
+    e.mass_entries(mass_.data());
+    e.constraint_entries(constraint_.data());
+    return scale_.fade_groups(diagonal_of_mass_.of(mass_), constraint_, compliance, fade, tau_) &&
+           factor_.factor(mass_, constraint_, compliance, tau_.data());
   }
-  void solve(double* x) override { matrix_.solve(x); }
-  const std::vector<double>& pivots() const override { return matrix_.factors().pivots(); }
-  const std::vector<double>& fading() const override { return matrix_.fading(); }
-  const double* constraint() override { return matrix_.constraint(); }
-  int singular_joint() const override { return matrix_.factors().singular_joint(); }
+  void solve(double* x) override { factor_.solve(x); }
+  const std::vector<double>& pivots() const override { return factor_.pivots(); }
+  const std::vector<double>& fading() const override { return tau_; }
+  const double* constraint() override { return constraint_.data(); }
+  int singular_joint() const override { return factor_.singular_joint(); }
 
  private:
-  FilteredMatrix matrix_;
+  AxisScale scale_;
+  MassDiagonal diagonal_of_mass_;
+  FilteredFactor factor_;
+  std::vector<double> mass_, constraint_, tau_;
 };
 
 template <class Space>
@@ -42,7 +50,7 @@ class OfBodies final : public LeavesFirstMatrix {
  public:
   OfBodies(const Mechanism& mechanism, std::unique_ptr<BodyMatrix<Space>> equations)
       : equations_(std::move(equations)),
-        scale_(mechanism.axis_scale()),
+        scale_(mechanism),
         inertia_(static_cast<std::size_t>(mechanism.nv())),
         constraint_(mechanism.constraint_pattern().size()),
         tau_(static_cast<std::size_t>(mechanism.m())),
@@ -55,12 +63,8 @@ class OfBodies final : public LeavesFirstMatrix {
     equations_->each_entry([&](int, int, double x) { fronts_.values()[i++] = x; });
     e.mass_diagonal(inertia_.data());
     e.constraint_entries(constraint_.data());
-    scale_.of_groups(inertia_, constraint_, tau_);
-    for (double& tau : tau_) {
-      tau = compliance ? 0 : tau * scale_.fading(fade);
-      if (!std::isfinite(tau)) return false;
-    }
-    return fronts_.factor(compliance, tau_.data());
+    return scale_.fade_groups(inertia_, constraint_, compliance, fade, tau_) &&
+           fronts_.factor(compliance, tau_.data());
   }
   void solve(double* x) override { fronts_.solve(x); }
   const std::vector<double>& pivots() const override { return fronts_.pivots(); }
@@ -91,7 +95,7 @@ std::unique_ptr<LeavesFirstMatrix> front_matrix(const Mechanism& mechanism) {
 }
 
 std::unique_ptr<LeavesFirstMatrix> leaves_first_matrix(const Mechanism& mechanism) {
-  return mechanism.solved_by_bodies() ? front_matrix(mechanism) : joint_matrix(mechanism);
+  return solved_by_bodies(mechanism) ? front_matrix(mechanism) : joint_matrix(mechanism);
 }
 
 namespace {

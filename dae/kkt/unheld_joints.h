@@ -51,4 +51,11 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
 /// Sets entries of x (nv) that the motions leave open to NaN.
 void blank(const UnheldJoints& unheld, Eigen::VectorXd& x);
 
+/// Why a solution of (7) failed at (t, q): one sentence naming the joints that neither inertia nor
+/// a loop holds. `rate`: the place in u at which it failed; −1: not known.
+std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q);
+
+/// "joint 'A' has no inertia before its loops close", for the joint at place `rate` in u.
+std::string light_before_loops(const Mechanism& mechanism, int rate);
+
 }  // namespace momenta

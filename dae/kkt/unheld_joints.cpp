@@ -1,7 +1,9 @@
-#include <momenta/dae/body_matrix.h>
+#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/dae/dense/least_squares.h>
-#include <momenta/dae/factor/tree_factor.h>
-#include <momenta/dae/unheld_joints.h>
+#include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/kkt/unheld_joints.h>
+#include <momenta/dae/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +42,33 @@ MatrixXd left_free(const MatrixXd& constraint, const MatrixXd& motions) {
     if (size > 0) y.row(k) /= size;
   }
   return y;
+}
+
+/// Whether value i of a formula is the number 0.
+bool is_zero(const Expression& formula, std::size_t i) {
+  const auto& in = formula.tape()[static_cast<std::size_t>(formula.outputs()[i])];
+  return in.operation == formula::Operation::number && in.number == 0;
+}
+
+/// A sentence naming a coordinate whose rate no momentum determines; empty: none.
+std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& spec) {
+  std::vector<bool> held(spec.coordinates.size(), false);
+  for (const auto& place : model.constraint.places)
+    held[static_cast<std::size_t>(place.column)] = true;
+  for (std::size_t k = 0; k < model.mass.places.size(); ++k) {
+    const auto& [row, column] = model.mass.places[k];
+    if (is_zero(model.mass.values, k)) continue;
+    held[static_cast<std::size_t>(row)] = held[static_cast<std::size_t>(column)] = true;
+  }
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (!held[i])
+      return "coordinate '" + spec.coordinates[i].name + "' has no inertia: " +
+             (is_zero(model.momenta, i)
+                  ? "its rate is not in the Lagrangian, and it is in no constraint; expected one "
+                    "of them"
+                  : "the Lagrangian is linear in its rate, and it is in no constraint; expected a "
+                    "Lagrangian quadratic in it, or a constraint");
+  return "";
 }
 
 }  // namespace
@@ -159,6 +188,44 @@ void blank(const UnheldJoints& unheld, VectorXd& x) {
       if (std::abs(unheld.motions(i, k)) > motion_part * largest)
         x[i] = std::numeric_limits<double>::quiet_NaN();
   }
+}
+
+std::string light_before_loops(const Mechanism& mechanism, int rate) {
+  if (mechanism.scene().lagrangian)
+    return "coordinate '" +
+           mechanism.scene().lagrangian->coordinates[static_cast<std::size_t>(rate)].name +
+           "' has no inertia" + (mechanism.m() > 0 ? " before its constraints hold it" : "") +
+           ", alone or with those before it";
+  for (std::size_t k = 0; k < mechanism.tree().bodies.size(); ++k) {
+    const Tree::Body& b = mechanism.tree().bodies[k];
+    if (rate >= b.u && rate < b.u + b.nv)
+      return mechanism.tree().joint_in_words(static_cast<int>(k)) +
+             " has no inertia before its loops close";
+  }
+  return "";
+}
+
+std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q) {
+  if (mechanism.scene().lagrangian) {
+    if (const std::string free =
+            free_coordinate(mechanism.lagrangian(), *mechanism.scene().lagrangian);
+        !free.empty())
+      return free;
+    if (rate < 0)
+      return "the equations have no finite solution; expected formulas with values there, "
+             "and "
+             "constraints that hold every coordinate without inertia";
+    return light_before_loops(mechanism, rate) +
+           "; expected a mass matrix that is positive definite" +
+           (mechanism.m() > 0 && mechanism.solver().dense()
+                ? ", or --kkt sparse where constraints hold it"
+                : "");
+  }
+  const auto e = mechanism.evaluation<double>();
+  const UnheldJoints unheld = unheld_joints(mechanism, *e, t, q, true, rate);
+  if (!unheld.joints.empty()) return in_words(mechanism, unheld);
+  return rate < 0 ? "its equations overflow; expected smaller numbers"
+                  : light_before_loops(mechanism, rate) + "; expected --kkt sparse";
 }
 
 }  // namespace momenta

@@ -3,7 +3,7 @@
 // nothing fills in and the cost is Σ depth² instead of n³ (Featherstone, Rigid Body Dynamics
 // Algorithms, 6.5).
 
-#include <momenta/dae/factor/kkt_pattern.h>
+#include <momenta/dae/kkt_pattern.h>
 
 #include <vector>
 
