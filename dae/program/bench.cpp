@@ -8,10 +8,10 @@
 #include <cstdio>
 #include <type_traits>
 
-#include "answers.h"
-#include "progress_line.h"
-#include "publish_suite.h"
+#include "equation_verbs.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
@@ -82,12 +82,32 @@ int publish_suite(const Options& o, SuiteResult& result, bool own_references,
   return ran > 0 && result.complete ? done : run_failed;
 }
 
+namespace {
+
 int bench(const Options& o, bool own_references) {
   if (has_scenes(o.scene)) return bench_scenes(o, own_references);
   const Suite suite = read_suite(o.scene);
   SuiteResult result;
   return publish_suite(o, result, own_references,
                        [&](const SuiteRequest& request) { result = run_suite(suite, request); });
+}
+
+}  // namespace
+
+Verb declare_bench(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<bool>(false);
+  CLI::App& verb = add_verb(app, "bench", "A suite of mechanisms or of files of equations, scored",
+                            "momenta bench examples/suites/ivp/suite.toml --out results");
+  verb.add_option("suite", o.scene, "TOML file that lists problems, forms or methods, tolerances")
+      ->required()
+      ->type_name("FILE");
+  verb.add_flag("--own-references", *own, "References are made anew, in quadruple precision");
+  positive(verb.add_option("--cpu-limit", o.cpu_limit, "CPU time of a run [s] (default: 60)"), "S");
+  add_timing(verb, o);
+  add_out(verb, o, "Directory for bench.csv, bench.json, index.html");
+  verb.add_flag("--json", o.json, "One JSON document on standard output");
+  verb.add_flag("--quiet", o.quiet, "No progress, no table");
+  return {&verb, [&o, own] { return bench(o, *own); }};
 }
 
 }  // namespace momenta::program

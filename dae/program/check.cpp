@@ -12,10 +12,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "answers.h"
 #include "checked.h"
 #include "loading.h"
-#include "reach_words.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
@@ -142,6 +141,8 @@ Checked::Checked(const Mechanism& checked)
   if (has_reach(mechanism)) reach = drive_reach(mechanism, assembly.start.t, assembly.start.q, end);
 }
 
+namespace {
+
 int check(const Options& o) {
   const auto mechanism = load(o);
   const Checked c(*mechanism);
@@ -167,6 +168,15 @@ int check(const Options& o) {
   print_operations(c);
   print_forms(c);
   return done;
+}
+
+}  // namespace
+
+Verb declare_check(CLI::App& app, Options& o) {
+  CLI::App& verb = add_verb(app, "check", "Topology, mobility, redundant equations, the plan",
+                            "momenta check examples/bricard/scene.toml");
+  add_scene(verb, o);
+  return {&verb, [&o] { return check(o); }};
 }
 
 }  // namespace momenta::program

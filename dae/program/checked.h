@@ -4,10 +4,12 @@
 #include <momenta/core/scene/lagrangian.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/drive_reach.h>
+#include <momenta/dae/cut/recut.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/mechanism.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace momenta::program {
 
@@ -33,5 +35,13 @@ void print_structure(const Checked& c);
 void print_rank(const Mechanism& mechanism, const RankReport& r);
 nlohmann::ordered_json rank_json(const Mechanism& mechanism, const RankReport& r);
 nlohmann::ordered_json check_json(const Checked& c);
+
+/// Whether there are drives beside loops.
+bool has_reach(const Mechanism& mechanism);
+/// Reach of drives in one line.
+std::string in_words(const DriveReach& reach, double end);
+nlohmann::ordered_json reach_json(const DriveReach& reach);
+/// Savings of other cut joints, in one sentence.
+std::string cuts_in_words(const Recut& recut);
 
 }  // namespace momenta::program

@@ -1,12 +1,12 @@
-// Completion scripts for bash, zsh and fish: tables of the words that can follow a word, made from
-// the options themselves.
+// The verb `completion`: scripts for bash, zsh and fish, tables of the words that can follow a
+// word, made from the options themselves.
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
-#include <stdexcept>
 
 #include "help.h"
-#include "values.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
@@ -275,10 +275,17 @@ std::string fish_script(const CLI::App& program) {
 
 }  // namespace
 
-std::string completion_script(const CLI::App& program, const std::string& shell) {
-  return shell == "bash"  ? bash_script(program)
-         : shell == "zsh" ? zsh_script(program)
-                          : fish_script(program);
+Verb declare_completion(CLI::App& app, Options&) {
+  const auto own = std::make_shared<std::string>();
+  CLI::App& verb = add_verb(app, "completion", "Prints a script that completes this command line",
+                            "momenta completion bash > momenta");
+  one_of(verb.add_option("shell", *own, "For which shell")->required(), {"bash", "zsh", "fish"});
+  return {&verb, [own, &app] {
+            const std::string script = *own == "bash"  ? bash_script(app)
+                                       : *own == "zsh" ? zsh_script(app)
+                                                       : fish_script(app);
+            return std::fputs(script.c_str(), stdout), done;
+          }};
 }
 
 }  // namespace momenta::program

@@ -9,13 +9,19 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "answers.h"
+#include "checked.h"
 #include "loading.h"
-#include "reach_words.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct ConvertOptions {
+  std::filesystem::path out;      ///< empty or "-": standard output
+  bool recut = false;             ///< cuts loops for the least work
+  std::vector<std::string> keep;  ///< joints and loops that stay
+};
 
 Scene recut_scene(const Options& o, const ConvertOptions& c) {
   const Mechanism mechanism(read(o));
@@ -46,8 +52,6 @@ void find_meshes_from(const std::filesystem::path& out, Scene& scene) {
       visual.file = (before / visual.file).lexically_normal().lexically_relative(now).string();
 }
 
-}  // namespace
-
 int convert(const Options& o, const ConvertOptions& c) {
   if (!c.keep.empty() && !c.recut)
     throw std::invalid_argument("--keep says what --recut leaves as it is; expected both");
@@ -67,6 +71,22 @@ int convert(const Options& o, const ConvertOptions& c) {
                                 "write the TOML to");
   find_meshes_from(c.out, scene);
   return write_results({{c.out, scene_text(scene)}}) ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_convert(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<ConvertOptions>();
+  CLI::App& verb = add_verb(app, "convert", "Writes a scene, URDF or MJCF as a scene in TOML",
+                            "momenta convert examples/models/ur5/ur5_robot.urdf ur5.toml");
+  add_scene_file(verb, o);
+  verb.add_flag("--quiet", o.quiet, "No messages about what was skipped");
+  verb.add_option("out", own->out, "TOML file to write (default: standard output)")
+      ->type_name("FILE");
+  verb.add_flag("--recut", own->recut, "Assemble it, and move loop cuts to where they cost less");
+  verb.add_option("--keep", own->keep, "With --recut: a joint or loop to leave; repeatable")
+      ->type_name("NAME");
+  return {&verb, [&o, own] { return convert(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -3,12 +3,17 @@
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/environment.h>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
+namespace {
+
+struct DriftOptions {
+  std::string forms;  ///< comma-separated; empty: all
+};
 
 int drift(const Options& o, const DriftOptions& d) {
   const auto mechanism = load(o);
@@ -61,6 +66,22 @@ int drift(const Options& o, const DriftOptions& d) {
   study.reference = o.reference.string();
   describe(study, o, *mechanism, a);
   return publish(study, conclusion(study) + "\n", o, journal.get());
+}
+
+}  // namespace
+
+Verb declare_drift(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<DriftOptions>();
+  CLI::App& verb =
+      add_verb(app, "drift", "Every form side by side: drift, energy, error against run time",
+               "momenta drift examples/four_bar/scene.toml --end 5 --out results");
+  add_scene(verb, o);
+  verb.add_option("--forms", own->forms, "Default: all")->type_name("FORM,...");
+  add_run_options(verb, o, "60");
+  add_timing(verb, o);
+  without(verb, {"--spectral-radius"});
+  verb.get_option("--integrator")->description("Of ODE forms (default: rk4, else dop853)");
+  return {&verb, [&o, own] { return drift(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -6,13 +6,21 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
-#include "answers.h"
-#include "cpu_limit.h"
 #include "loading.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct EffortOptions {
+  std::filesystem::path motion;  ///< a table; empty: motion of the drives
+  std::string actuate, hold;     ///< comma-separated
+  std::string weights;           ///< A=1,B=2
+  bool poses_alone = false;      ///< all at rest
+  std::optional<double> within;
+};
 
 /// Output times of the options, else of the scene.
 std::vector<double> times_of(const Options& o, const RunDefaults& defaults) {
@@ -22,8 +30,6 @@ std::vector<double> times_of(const Options& o, const RunDefaults& defaults) {
   for (int i = 0; i <= samples; ++i) times.push_back(end * i / samples);
   return times;
 }
-
-}  // namespace
 
 int effort(const Options& o, const EffortOptions& options) {
   const CpuLimit limit(o.cpu_limit.value_or(0));
@@ -74,6 +80,42 @@ int effort(const Options& o, const EffortOptions& options) {
   }
   tell(o, text, effort_table(result), "index.html");
   return done;
+}
+
+}  // namespace
+
+Verb declare_effort(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<EffortOptions>();
+  CLI::App& verb =
+      add_verb(app, "effort", "Inverse dynamics: efforts of drives along a given motion",
+               "momenta effort examples/motor/scene.toml --out results");
+  add_scene(verb, o);
+  without(verb, {"--kkt", "--cut"});
+  verb.add_option("--motion", own->motion,
+                  "CSV with columns of trajectory.csv: t and coordinates; rates and accelerations "
+                  "if it has them (default: the motion of the drives)")
+      ->type_name("FILE");
+  verb.add_option("--actuate", own->actuate,
+                  "Actuated coordinates (default: the driven ones; without drives and loops all)")
+      ->type_name("NAME,...");
+  verb.add_option("--weights", own->weights,
+                  "Of squared efforts, where actuators work against each other: A=1,B=2")
+      ->type_name("NAME=W,...");
+  verb.add_option("--hold", own->hold, "Coordinates that stay where they are at the start")
+      ->type_name("NAME,...");
+  verb.add_flag("--static", own->poses_alone,
+                "Efforts that hold each pose at rest; without a motion: the start");
+  positive(verb.add_option("--within", own->within,
+                           "How far loops may move what is given, in lengths of the scene, "
+                           "and which part of forces may be held by no actuator (default: "
+                           "1e-6)"),
+           "X");
+  positive(verb.add_option("--end", o.end, "End time of the drives' motion [s]; intervals"), "S");
+  within(verb.add_option("--samples", o.samples, "Intervals of the drives' motion"), "N", 1,
+         1000000);
+  add_cpu_limit(verb, o);
+  add_out(verb, o, "Directory for effort.csv, effort.json, index.html");
+  return {&verb, [&o, own] { return effort(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -10,11 +10,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "answers.h"
-#include "cpu_limit.h"
+#include "equation_verbs.h"
 #include "loading.h"
-#include "progress_line.h"
-#include "publish_suite.h"
+#include "progress.h"
 #include "results.h"
 
 namespace momenta::program {

@@ -5,11 +5,12 @@
 
 #include <cstdio>
 
-#include "answers.h"
 #include "loading.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
+namespace {
 
 int evaluate(const Options& o, const std::string& state) {
   const auto mechanism = load(o);
@@ -24,6 +25,23 @@ int evaluate(const Options& o, const std::string& state) {
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "evaluate.json").c_str());
   return done;
+}
+
+}  // namespace
+
+Verb declare_evaluate(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<std::string>("{}");
+  CLI::App& verb =
+      add_verb(app, "evaluate", "Everything at one state, as one JSON document",
+               "momenta evaluate examples/pendulum/scene.toml --at '{\"q\": {\"O\": 1.5}}'");
+  add_scene(verb, o);
+  without(verb, {"--at"});
+  verb.add_option("--at", *own,
+                  "State by joint name, {\"t\": 0, \"q\": {..}, \"v\" or \"p\": {..}, \"tau\": "
+                  "{..}}: a JSON file, -, or the text itself (what is left out is the start)")
+      ->type_name("STATE");
+  add_out(verb, o, "Directory for evaluate.json");
+  return {&verb, [&o, own] { return evaluate(o, *own); }};
 }
 
 }  // namespace momenta::program

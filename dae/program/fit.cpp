@@ -9,11 +9,11 @@
 #include <ctime>
 #include <stdexcept>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
 #include "search.h"
+#include "verb.h"
 
 namespace momenta::program {
 
@@ -55,6 +55,8 @@ SceneText run_text(const Options& o) {
   scene.options.cut = CutChoice::scene;
   return scene;
 }
+
+namespace {
 
 int fit(const Options& o, const FitOptions& options) {
   if (!is_toml(o.scene) || !o.at.empty())
@@ -112,6 +114,54 @@ int fit(const Options& o, const FitOptions& options) {
   }
   tell(o, text, fit_table(result), "index.html");
   return result.starts[result.best].converged && !result.stopped ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_fit(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<FitOptions>();
+  CLI::App& verb = add_verb(app, "fit", "Synthesis and identification: parameters of a scene",
+                            "momenta fit examples/straight_line/scene.toml --vary reach --sweep O");
+  add_scene(verb, o);
+  without(verb, {"--kkt", "--cut", "--at", "--loops", "--free-root", "--control", "--key"});
+  verb.add_option("--vary", own->vary, "Numbers of the scene, within A=FROM:TO")
+      ->type_name("NAME,...")
+      ->required();
+  verb.add_option("--sweep", own->sweep, "The coordinate that moves it (default: a run)")
+      ->type_name("NAME");
+  verb.add_option("--to", own->to,
+                  "CSV: wanted, columns as in move.csv; without --sweep measured, as in "
+                  "trajectory.csv (default: wanted.csv, measured.csv beside the scene)")
+      ->type_name("FILE");
+  verb.add_option("--least", own->least,
+                  "In place of it: max, min, mean, integral, first, last of formulas of the "
+                  "motion, and parameters")
+      ->type_name("FORMULA");
+  verb.add_option("--keep", own->keep,
+                  "'a + d <= b + c', 'max(P.y) <= 2', at each pose 'C.transmission >= 0.7'; "
+                  "repeatable")
+      ->type_name("CONDITION")
+      ->expected(1)
+      ->take_all();
+  verb.add_option("--over", own->over, "Way of the swept coordinate (default: a turn)")
+      ->type_name("FROM:TO");
+  within(verb.add_option("--poses", own->poses, "On this way (default: 73)"), "N", 2, 100000);
+  verb.add_option("--rate", own->rate, "On it, for rates and efforts (default: 1)")->type_name("X");
+  within(verb.add_option("--starts", own->starts, "The scene's own, others drawn"), "N", 1, 100000)
+      ->capture_default_str();
+  verb.add_option("--seed", own->seed, "Of these")->type_name("N")->capture_default_str();
+  within(verb.add_option("--iterations", own->iterations, "Of each start, at the most"), "N", 1,
+         1000000)
+      ->capture_default_str();
+  add_form(verb, o, "Of a run");
+  add_run_options(verb, o);
+  without(verb, {"--reference", "--figures", "--penalty", "--spectral-radius", "--mesh-bytes",
+                 "--samples", "--baumgarte-alpha", "--baumgarte-beta", "--beta"});
+  verb.get_option("--end")->description("End time [s]");
+  verb.get_option("--integrator")->description("rk4, dp5, dop853, vern9 (by --rtol)");
+  verb.get_option("--cpu-limit")->description("CPU time of all of it [s] (default: none)");
+  verb.get_option("--out")->description("Directory for fitted.toml, fit.json, …");
+  return {&verb, [&o, own] { return fit(o, *own); }};
 }
 
 }  // namespace momenta::program

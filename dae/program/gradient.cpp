@@ -6,12 +6,20 @@
 #include <momenta/dae/report/gradient_report.h>
 #include <momenta/dae/study/environment.h>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
+namespace {
+
+struct GradientOptions {
+  std::string of;         ///< a formula
+  std::string by;         ///< comma-separated
+  bool integral = false;  ///< over the run
+  std::string mode = "automatic";
+};
 
 int gradient_verb(const Options& o, const GradientOptions& options) {
   expect_own_results(o.out, "gradient.json");
@@ -55,6 +63,36 @@ int gradient_verb(const Options& o, const GradientOptions& options) {
   }
   tell(o, text, gradient_table(result), request.trajectory ? "gradient.csv" : "gradient.json");
   return done;
+}
+
+}  // namespace
+
+Verb declare_gradient(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<GradientOptions>();
+  CLI::App& verb =
+      add_verb(app, "gradient", "How a run depends on parameters and on its start",
+               "momenta gradient examples/pendulum/scene.toml --of P.y --by O.q --end 1");
+  add_scene(verb, o);
+  without(verb, {"--cut", "--at"});
+  verb.add_option("--of", own->of,
+                  "A formula of t, parameters, energy and columns of trajectory.csv: O.q, O.u, P.x")
+      ->type_name("FORMULA")
+      ->required();
+  verb.add_flag("--integral", own->integral,
+                "Its integral over the run (default: its value at the end)");
+  verb.add_option("--by", own->by, "Numbers of [parameters]; start values: O.q, O.u")
+      ->type_name("NAME,...")
+      ->required();
+  one_of(
+      verb.add_option("--mode", own->mode, "A tangent for each number, or one sweep back for all"),
+      {"automatic", "forward", "adjoint"})
+      ->capture_default_str();
+  add_form(verb, o, "momentum, acceleration, projected or baumgarte");
+  add_run_options(verb, o);
+  without(verb, {"--reference", "--figures", "--penalty", "--spectral-radius", "--mesh-bytes"});
+  verb.get_option("--integrator")->description("rk4, or dp5, dop853, vern9 (by --rtol)");
+  verb.get_option("--out")->description("Directory for gradient.csv, gradient.json");
+  return {&verb, [&o, own] { return gradient_verb(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -8,9 +8,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
 #include "search.h"
 

@@ -6,13 +6,14 @@
 
 #include <sstream>
 
-#include "answers.h"
-#include "cpu_limit.h"
+#include "equation_verbs.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
+namespace {
 
 int index_verb(const Options& o, const std::string& forms, const std::string& state) {
   const CpuLimit limit(o.cpu_limit.value_or(0));
@@ -34,6 +35,28 @@ int index_verb(const Options& o, const std::string& forms, const std::string& st
   if (!o.out.empty() && !write_results({{o.out / "index.json", json}})) return run_failed;
   tell(o, json, index_table(study), "index.json");
   return interrupted() ? run_failed : done;
+}
+
+}  // namespace
+
+Verb declare_index(CLI::App& app, Options& o) {
+  struct Wanted {
+    std::string forms, state;
+  };
+  const auto own = std::make_shared<Wanted>();
+  CLI::App& verb =
+      add_verb(app, "index",
+               "The differentiation index of each form, by numbers, and its hidden constraints",
+               "momenta index examples/four_bar/scene.toml --forms momentum-index2");
+  add_scene(verb, o);
+  without(verb, {"--at"});
+  verb.add_option("--forms", own->forms, "Default: all")->type_name("FORM,...");
+  verb.add_option("--at", own->state, "Consistent state, as for evaluate (default: the start)")
+      ->type_name("STATE");
+  add_cpu_limit(verb, o);
+  add_out(verb, o, "Directory for index.json");
+  return {&verb, [&o, own] { return index_verb(o, own->forms, own->state); },
+          [&o] { return index_of_equations(o); }};
 }
 
 }  // namespace momenta::program

@@ -7,9 +7,8 @@
 
 #include <stdexcept>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
 #include "search.h"
 

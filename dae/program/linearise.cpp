@@ -9,13 +9,21 @@
 
 #include <cmath>
 
-#include "answers.h"
-#include "cpu_limit.h"
 #include "loading.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct LineariseOptions {
+  std::string kind = "minimal";              ///< minimal or descriptor
+  std::string state;                         ///< as for evaluate; empty: the start
+  std::optional<double> time, after;         ///< [s]
+  std::string equilibrium;                   ///< settle, nearest, or empty
+  std::string inputs, outputs, independent;  ///< comma-separated; empty: all, and chosen
+};
 
 /// Refuses options for more than one state.
 void expect_one_state(const LineariseOptions& l) {
@@ -49,8 +57,6 @@ LinearModel model_of(const Options& o, const LineariseOptions& l, const Mechanis
   return linear_model(mechanism, find_equilibrium(mechanism, start, search), request);
 }
 
-}  // namespace
-
 int linearise_verb(const Options& o, const LineariseOptions& l) {
   expect_one_state(l);
   const CpuLimit limit(o.cpu_limit.value_or(60));
@@ -72,6 +78,41 @@ int linearise_verb(const Options& o, const LineariseOptions& l) {
     return run_failed;
   tell(o, json, linear_table(model), "linear.json");
   return done;
+}
+
+}  // namespace
+
+Verb declare_linearise(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<LineariseOptions>();
+  CLI::App& verb =
+      add_verb(app, "linearise", "E, A, B, C, D of a linear model about a state, for control",
+               "momenta linearise examples/four_bar/scene.toml --out results");
+  add_scene(verb, o);
+  without(verb, {"--kkt", "--cut", "--at"});
+  one_of(verb.add_option("--kind", own->kind,
+                         "States: independent coordinates and rates; all, with λ"),
+         {"minimal", "descriptor"})
+      ->capture_default_str();
+  verb.add_option("--at", own->state, "State, as for evaluate (default: the start)")
+      ->type_name("STATE");
+  verb.add_option("--time", own->time, "The start, with drives led to this time [s]")
+      ->type_name("S");
+  positive(verb.add_option("--after", own->after, "The end of a run of this length [s]"), "S");
+  one_of(verb.add_option("--equilibrium", own->equilibrium,
+                         "At rest with drives held, found as modes finds it"),
+         {"settle", "nearest"});
+  verb.add_option("--inputs", own->inputs,
+                  "By name, joint or group: efforts, drives (default: all)")
+      ->type_name("NAME,...");
+  verb.add_option("--outputs", own->outputs,
+                  "Groups: coordinates, rates, accelerations, markers, efforts, multipliers")
+      ->type_name("NAME,...");
+  verb.add_option("--independent", own->independent,
+                  "Coordinates that are states (default: chosen)")
+      ->type_name("NAME,...");
+  add_cpu_limit(verb, o, "60");
+  add_out(verb, o, "Directory for linear.json, linear.m, linear.py");
+  return {&verb, [&o, own] { return linearise_verb(o, *own); }};
 }
 
 }  // namespace momenta::program

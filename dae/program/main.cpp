@@ -1,4 +1,4 @@
-// The program `momenta`: one file per verb.
+// The program `momenta`.
 
 #include <momenta/core/kernel/levels/level.h>
 #include <momenta/core/scene/scene.h>
@@ -17,9 +17,7 @@
 #include "help.h"
 #include "loading.h"
 #include "results.h"
-#include "typed_wrong.h"
-#include "values.h"
-#include "verbs.h"
+#include "verb.h"
 
 using namespace momenta::program;
 
@@ -41,13 +39,7 @@ int answer(int argc, char** argv) {
   app.footer(std::string(exit_status) +
              "\nExample: momenta drift examples/four_bar/scene.toml --out results");
 
-  std::vector<Verb> verbs;
-  for (const auto add :
-       {add_check,    add_assemble, add_run,        add_drift,     add_work,  add_bench,
-        add_evaluate, add_index,    add_modes,      add_linearise, add_move,  add_effort,
-        add_fit,      add_gradient, add_view,       add_stress,    add_sweep, add_section,
-        add_convert,  add_make,     add_completion, add_manual})
-    verbs.push_back(add(app, o));
+  const std::vector<Verb> verbs = all_verbs(app, o);
 
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);

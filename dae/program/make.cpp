@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "answers.h"
 #include "families.h"
+#include "verb.h"
 
 namespace momenta::program {
 
@@ -34,6 +34,8 @@ std::span<const Family> families() {
   return all;
 }
 
+namespace {
+
 int make(const std::string& family, std::optional<int> n, bool turned) {
   const auto all = families();
   const auto found =
@@ -62,6 +64,23 @@ int make(const std::string& family, std::optional<int> n, bool turned) {
   else
     found->print_in(size, turned ? Plane{{0.3, -0.5, 0.7}} : Plane{});
   return done;
+}
+
+}  // namespace
+
+Verb declare_make(CLI::App& app, Options&) {
+  struct Asked {
+    std::string family;
+    std::optional<int> n;
+    bool turned = false;
+  };
+  const auto own = std::make_shared<Asked>();
+  CLI::App& verb = add_verb(app, "make", "Prints a scene of a family",
+                            "momenta make stewart --n 6 > stewart.toml");
+  verb.add_option("family", own->family, "Which mechanism")->required()->type_name("FAMILY");
+  verb.add_option("--n", own->n, "Size (each family has its own default)")->type_name("N");
+  verb.add_flag("--turned", own->turned, "Planar families: in a plane oblique to all axes");
+  return {&verb, [own] { return make(own->family, own->n, own->turned); }};
 }
 
 }  // namespace momenta::program

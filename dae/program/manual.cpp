@@ -1,12 +1,12 @@
-// The man page momenta(1) in roff, made from the options themselves. An option shared by several
-// verbs is listed once, with their names.
+// The verb `manual`: the man page momenta(1) in roff, made from the options themselves. An option
+// shared by several verbs is listed once, with their names.
 
 #include <algorithm>
-#include <sstream>
+#include <cstdio>
 
 #include "families.h"
 #include "help.h"
-#include "values.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
@@ -77,8 +77,6 @@ std::string section_of(const std::vector<Entry>& entries, std::size_t verbs) {
   return out;
 }
 
-}  // namespace
-
 std::string man_page(const CLI::App& program) {
   const auto verbs = verbs_of(program);
   std::string out = ".TH MOMENTA 1 \"\" \"" + plain(program.version()) + "\" \"User Commands\"\n";
@@ -112,6 +110,13 @@ std::string man_page(const CLI::App& program) {
     out += plain(footer.substr(footer.find(": ") + 2)) + "\n";
   }
   return out + ".EE\n";
+}
+
+}  // namespace
+
+Verb declare_manual(CLI::App& app, Options&) {
+  CLI::App* verb = app.add_subcommand("manual", "Prints momenta(1) in roff")->group("");
+  return {verb, [&app] { return std::fputs(man_page(app).c_str(), stdout), done; }};
 }
 
 }  // namespace momenta::program

@@ -7,13 +7,19 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
-#include "answers.h"
-#include "cpu_limit.h"
 #include "loading.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct ModesOptions {
+  std::string equilibrium = "settle";  ///< settle, nearest, start or steady
+  std::string drives = "held";         ///< held or running
+  std::optional<int> count;
+};
 
 constexpr std::size_t most_films = 12;
 
@@ -29,8 +35,6 @@ void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& res
     study.motions.back().every = 1;
   }
 }
-
-}  // namespace
 
 int modes(const Options& o, const ModesOptions& m) {
   const CpuLimit limit(o.cpu_limit.value_or(0));
@@ -67,6 +71,29 @@ int modes(const Options& o, const ModesOptions& m) {
   }
   tell(o, text, modes_table(result), "index.html");
   return done;
+}
+
+}  // namespace
+
+Verb declare_modes(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<ModesOptions>();
+  CLI::App& verb = add_verb(app, "modes", "Equilibrium; natural frequencies, damping, mode shapes",
+                            "momenta modes examples/four_bar/scene.toml --out results");
+  add_scene(verb, o);
+  one_of(verb.add_option("--equilibrium", own->equilibrium,
+                         "Descend to a rest pose; Newton (also saddles); start pose; start motion"),
+         {"settle", "nearest", "start", "steady"})
+      ->capture_default_str();
+  one_of(verb.add_option("--drives", own->drives,
+                         "As at t = 0, or at constant speed: a relative equilibrium"),
+         {"held", "running"})
+      ->capture_default_str();
+  within(verb.add_option("--count", own->count,
+                         "Modes nearest to s = 0 (default: all of up to 300, else 20)"),
+         "N", 1, 1000);
+  add_cpu_limit(verb, o);
+  add_out(verb, o, "Directory for modes.csv, modes.json, index.html");
+  return {&verb, [&o, own] { return modes(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -7,12 +7,21 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
-#include "answers.h"
-#include "cpu_limit.h"
 #include "loading.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
+namespace {
+
+struct MoveOptions {
+  std::string sweep, hold;       ///< comma-separated
+  std::string output;            ///< a coordinate; empty: none
+  std::optional<double> to, by;  ///< [rad or m]
+  bool singular_values = false;
+};
+
 int move(const Options& o, const MoveOptions& options) {
   const CpuLimit limit(o.cpu_limit.value_or(0));
   const Mechanism mechanism(held_at_start(read(o)), {.algebra = mechanism_options(o).algebra});
@@ -45,6 +54,37 @@ int move(const Options& o, const MoveOptions& options) {
   }
   tell(o, text, move_table(result), "index.html");
   return result.end == MoveResult::End::stopped ? run_failed : done;
+}
+
+}  // namespace
+
+Verb declare_move(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<MoveOptions>();
+  CLI::App& verb = add_verb(app, "move", "Poses, ratios, dead points as one coordinate is swept",
+                            "momenta move examples/four_bar/scene.toml --sweep O --out results");
+  add_scene(verb, o);
+  without(verb, {"--kkt", "--cut"});
+  verb.add_option("--sweep", own->sweep,
+                  "Coordinate to sweep; more of them in proportion: A=1,B=-0.5")
+      ->type_name("NAME,...")
+      ->required();
+  verb.add_option("--hold", own->hold, "Coordinates that stay where they are at the start")
+      ->type_name("NAME,...");
+  verb.add_option("--to", own->to,
+                  "Where the first ends [rad or m] (default: once along the curve of poses)")
+      ->type_name("X");
+  positive(verb.add_option("--by", own->by,
+                           "From pose to pose [rad or m] (default: a degree, or a hundredth "
+                           "of the scene's length)"),
+           "X");
+  verb.add_option("--output", own->output,
+                  "Coordinate to which force is passed: transmission angle, joint forces")
+      ->type_name("NAME");
+  verb.add_flag("--singular-values", own->singular_values,
+                "Of the loop equations at each pose: the smallest over the largest");
+  add_cpu_limit(verb, o);
+  add_out(verb, o, "Directory for move.csv, move.json, index.html");
+  return {&verb, [&o, own] { return move(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -1,16 +1,39 @@
 #include "options.h"
 
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_result.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-#include "values.h"
-
 namespace momenta::program {
+
+CLI::Option* one_of(CLI::Option* option, const std::vector<std::string>& words) {
+  std::string type_name;
+  for (const std::string& word : words) type_name += (type_name.empty() ? "" : "|") + word;
+  const auto check = [words](const std::string& text) -> std::string {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return {};
+    const std::vector<std::string_view> known(words.begin(), words.end());
+    return "found " + reading::in_quotes(text) + ", expected one of: " + listed(words) +
+           reading::did_you_mean(text, known);
+  };
+  return option->check(check)->type_name(type_name);
+}
+
+CLI::Option* positive(CLI::Option* option, const std::string& type_name) {
+  const auto check = [](const std::string& text) -> std::string {
+    double x = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, x);
+    if (is_number && x > 0 && std::isfinite(x)) return {};
+    return "found " + (is_number ? text : reading::in_quotes(text)) +
+           ", expected a positive number";
+  };
+  return option->check(check)->type_name(type_name);
+}
 
 void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("scene", o.scene, "TOML, URDF (.urdf), MJCF (.xml, .mjcf) or SDF (.sdf)")
@@ -105,9 +128,20 @@ void add_mesh_bytes(CLI::App& verb, Options& o) {
       ->capture_default_str();
 }
 
+void add_form(CLI::App& verb, Options& o, const char* what) {
+  verb.add_option("--form", o.form, what)->capture_default_str()->type_name("FORM");
+}
+
+void add_out(CLI::App& verb, Options& o, const char* what) {
+  verb.add_option("--out", o.out, what)->type_name("DIR");
+}
+
+void without(CLI::App& verb, std::initializer_list<const char*> options) {
+  for (const char* option : options) verb.remove_option(verb.get_option(option));
+}
+
 void add_results(CLI::App& verb, Options& o) {
-  verb.add_option("--out", o.out, "Directory for results; bytes of meshes in a page")
-      ->type_name("DIR");
+  add_out(verb, o, "Directory for results; bytes of meshes in a page");
   add_mesh_bytes(verb, o);
   one_of(verb.add_option("--figures", o.figures, "Every chart for papers, in DIR/figures"),
          {"svg"});

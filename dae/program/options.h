@@ -1,14 +1,17 @@
 #pragma once
-// Options that several verbs share, and the exit status.
+// Options that several verbs share, the kinds of their values, and the exit status.
 
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/report/meshes.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -46,6 +49,31 @@ struct Options {
   bool json = false, quiet = false;
 };
 
+// Kinds of values
+
+/// One of these words, shown as type name.
+CLI::Option* one_of(CLI::Option* option, const std::vector<std::string>& words);
+/// Greater than 0, shown as `type_name`.
+CLI::Option* positive(CLI::Option* option, const std::string& type_name);
+/// The option takes a number from `least` to `most`, shown as `type_name`.
+template <class Number>
+CLI::Option* within(CLI::Option* option, const std::string& type_name, Number least, Number most) {
+  const auto check = [=](const std::string& text) -> std::string {
+    Number x{};
+    if (CLI::detail::lexical_cast(text, x) && least <= x && x <= most) return {};
+    const auto digits = [](Number n) {
+      if constexpr (std::is_integral_v<Number>) return std::to_string(n);
+      return reading::digits(static_cast<double>(n));
+    };
+    return "found " + reading::in_quotes(text) + ", expected a " +
+           (std::is_integral_v<Number> ? "whole number" : "number") + " from " + digits(least) +
+           " to " + digits(most);
+  };
+  return option->check(check)->type_name(type_name);
+}
+
+// Options of several verbs
+
 void add_scene(CLI::App& verb, Options& o);
 /// Without options of runs, but with values missing in a URDF.
 void add_scene_file(CLI::App& verb, Options& o, bool required = true);
@@ -55,7 +83,12 @@ void add_timing(CLI::App& verb, Options& o);
 /// `cpu_limit`: default for this verb, in words.
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);
-/// Option of verbs without runs (cpu_limit.h); `usual`: default, in words.
+void add_form(CLI::App& verb, Options& o, const char* what = "Which equations");
+/// `what`: the files that it gets.
+void add_out(CLI::App& verb, Options& o, const char* what);
+/// Removes options that this verb does not take.
+void without(CLI::App& verb, std::initializer_list<const char*> options);
+/// Option of verbs without runs (progress.h); `usual`: default, in words.
 void add_cpu_limit(CLI::App& verb, Options& o, const char* usual = "none");
 /// Option of verbs that write pages.
 void add_mesh_bytes(CLI::App& verb, Options& o);

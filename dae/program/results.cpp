@@ -17,9 +17,8 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "cpu_limit.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 
 namespace momenta::program {
 

@@ -19,12 +19,12 @@
 #include <map>
 #include <stdexcept>
 
-#include "answers.h"
-#include "cpu_limit.h"
+#include "equation_verbs.h"
 #include "kept_run.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
@@ -187,8 +187,6 @@ class RunFiles {
   std::optional<PartFile> summary_;
 };
 
-}  // namespace
-
 int run(const Options& o) {
   const double limit = o.cpu_limit.value_or(0);
   const CpuLimit before(limit);
@@ -285,6 +283,22 @@ int run(const Options& o) {
   if (!finished(result))
     std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
   return written && finished(result) ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_run(CLI::App& app, Options& o) {
+  CLI::App& verb = add_verb(app, "run", "One form, one integrator",
+                            "momenta run examples/four_bar/scene.toml --end 20 --out results");
+  add_scene(verb, o);
+  add_form(verb, o);
+  add_run_options(verb, o);
+  add_timing(verb, o);
+  one_of(verb.add_option("--data", o.data, "Format of the trajectory; reactions too"),
+         {"csv", "hdf5"})
+      ->capture_default_str();
+  verb.add_flag("--reactions", o.reactions, "With the reactions of joints as columns");
+  return {&verb, [&o] { return run(o); }, [&o] { return run_equation_file(o); }};
 }
 
 }  // namespace momenta::program

@@ -5,7 +5,6 @@
 #include "scene_text.h"
 
 namespace momenta::program {
-
 namespace {
 
 void put(const std::string& text) {

@@ -7,10 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "answers.h"
-#include "progress_line.h"
+#include "options.h"
+#include "progress.h"
 
 namespace momenta::program {
+
+struct FitOptions {
+  std::string vary;   ///< NAME=FROM:TO, comma-separated
+  std::string sweep;  ///< a coordinate; empty: a run
+  /// Wanted poses, or without `sweep` a measured motion; empty: wanted.csv or measured.csv beside
+  /// the scene.
+  std::filesystem::path to;
+  std::string least;              ///< a formula of the motion; empty: none
+  std::vector<std::string> keep;  ///< conditions
+  std::string over;               ///< FROM:TO of the swept coordinate; empty: a turn
+  std::optional<int> poses;
+  std::optional<double> rate;
+  int starts = 1, iterations = 500;
+  std::uint64_t seed = 1;
+};
 
 SweptWay way_of(const FitOptions& options);
 /// The scene's text for runs, integrated as it is written.

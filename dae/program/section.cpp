@@ -6,13 +6,18 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct SectionOptions {
+  std::string when, axes, starts, led;
+  bool up = false, down = false;
+};
 
 /// "O.u=-1:1:9", or "O.u=0.5,1".
 void take_starts(const std::string& text, SectionRequest& request) {
@@ -57,8 +62,6 @@ std::string column(const std::vector<std::string>& columns, const std::string& n
   throw std::invalid_argument("--axes: '" + name + "' is no column of the trajectory, expected " +
                               "coordinates, rates and markers, as in O.q,O.u");
 }
-
-}  // namespace
 
 int section(const Options& o, const SectionOptions& s) {
   Scene scene = read(o);
@@ -118,6 +121,35 @@ int section(const Options& o, const SectionOptions& s) {
     all &= !orbit.left_out.empty() || finished(orbit.run);
   }
   return all ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_section(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<SectionOptions>();
+  CLI::App& verb = add_verb(app, "section", "Poincaré section: where runs pass a surface",
+                            "momenta section examples/section/scene.toml --when x --up --end 100");
+  add_scene(verb, o);
+  verb.add_option("--when", own->when, "The surface: where this formula is zero")
+      ->type_name("FORMULA")
+      ->required();
+  auto* upwards = verb.add_flag("--up", own->up, "From below zero to above alone");
+  verb.add_flag("--down", own->down, "From above zero to below alone")->excludes(upwards);
+  verb.add_option("--axes", own->axes,
+                  "Two columns to be drawn (default: the last coordinate and rate)")
+      ->type_name("COLUMN,COLUMN");
+  verb.add_option("--starts", own->starts, "A start value in turn: O.u=FROM:TO:COUNT or O.u=X,...")
+      ->type_name("NAME=VALUES");
+  verb.add_option("--energy", own->led,
+                  "With --starts: the rate that is led so that the energy stays")
+      ->type_name("NAME");
+  add_form(verb, o);
+  add_run_options(verb, o);
+  without(verb, {"--reference", "--figures", "--samples", "--mesh-bytes", "--spectral-radius",
+                 "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"});
+  verb.get_option("--end")->description("End time [s]");
+  verb.get_option("--out")->description("Directory for section.csv, .json, index.html");
+  return {&verb, [&o, own] { return section(o, *own); }};
 }
 
 }  // namespace momenta::program

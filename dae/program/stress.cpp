@@ -4,14 +4,21 @@
 
 #include <stdexcept>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
 #include "stress_ladders.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct StressOptions {
+  std::string forms, integrators, along;  ///< comma-separated; empty: the usual ones, all ladders
+  double within = 1e-3;
+  double reference_seconds = 10;
+  int threads = 0;  ///< 0: one for each processor
+};
 
 /// Pairs that fit; a form without any of its own takes its usual method.
 std::vector<Contestant> contestants_of(const std::vector<std::string>& forms,
@@ -31,8 +38,6 @@ std::vector<Contestant> contestants_of(const std::vector<std::string>& forms,
   }
   return all;
 }
-
-}  // namespace
 
 int stress(const Options& o, const StressOptions& options) {
   expect_place_for_figures(o);
@@ -97,6 +102,44 @@ int stress(const Options& o, const StressOptions& options) {
   close(journal.get(), runs, result.complete, o);
   tell(o, json, stress_table(result));
   return result.complete ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_stress(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<StressOptions>();
+  CLI::App& verb =
+      add_verb(app, "stress", "Stress tests of a scene, or built-in ones: which form fails where",
+               "momenta stress examples/four_bar/scene.toml --along size --end 1");
+  add_scene_file(verb, o, false);
+  verb.add_option("--forms", own->forms, "Default: all")->type_name("FORM,...");
+  verb.add_option("--integrators", own->integrators,
+                  "Each for the forms it takes (default: by form)")
+      ->type_name("INTEGRATOR,...");
+  verb.add_option(
+          "--along", own->along,
+          "Of a scene: stiffness, damping, mass ratio, size, speed, duration; built in: words of a "
+          "ladder's name (default: all)")
+      ->type_name("LADDER,...");
+  positive(
+      verb.add_option("--within", own->within, "Bound on drift, energy error and error to survive"),
+      "X")
+      ->capture_default_str();
+  positive(verb.add_option("--rtol", o.rtol, "Relative and absolute tolerance"), "X")
+      ->capture_default_str();
+  positive(verb.add_option("--end", o.end, "End time of the scene [s]"), "S");
+  positive(verb.add_option("--cpu-limit", o.cpu_limit, "CPU time of a run [s] (default: 20)"), "S");
+  within(verb.add_option("--reference-limit", own->reference_seconds,
+                         "CPU time of one reference in quadruple precision [s]; 0: none"),
+         "S", 0.0, 1e9)
+      ->capture_default_str();
+  within(verb.add_option("--threads", own->threads, "Default: one for each processor"), "N", 1,
+         1024);
+  add_level(verb, o);
+  add_results(verb, o);
+  verb.add_flag("--json", o.json, "One JSON document on standard output");
+  verb.add_flag("--quiet", o.quiet, "No progress, no table");
+  return {&verb, [&o, own] { return stress(o, *own); }};
 }
 
 }  // namespace momenta::program

@@ -12,14 +12,25 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "answers.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "ranks.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
+
+struct SweepOptions {
+  std::vector<std::string> vary;
+  std::string watch;   ///< comma-separated
+  std::string sample;  ///< random, latin or sobol; empty: all combinations
+  std::optional<std::size_t> points;
+  std::optional<std::uint64_t> seed;
+  bool indices = false;
+  std::string task;  ///< I/N; empty: all cases
+  int threads = 0;   ///< 0: one for each processor, of one process
+};
 
 /// Keys of cases, unique to a study.
 class Keys {
@@ -148,8 +159,6 @@ void take_scene(const Options& o, SweepRequest& request) {
   if (own) request.fixed = settings_of(o);
 }
 
-}  // namespace
-
 int sweep(const Options& o, const SweepOptions& s) {
   Ranks ranks;
   watch_signals();
@@ -243,6 +252,38 @@ int sweep(const Options& o, const SweepOptions& s) {
   const bool any = std::any_of(finished.cases().begin(), finished.cases().end(),
                                [](const SweepCase& c) { return c.status == "done"; });
   return any ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_sweep(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<SweepOptions>();
+  CLI::App& verb =
+      add_verb(app, "sweep", "One run for each combination of numbers of the scene",
+               "momenta sweep examples/four_bar/scene.toml --vary body.crank.mass=1,2");
+  add_scene(verb, o);
+  verb.add_option("--vary", own->vary, "a=1,2 or a=0:9:4[:log], sampled a=0:9, a=normal:5:1")
+      ->type_name("PLACE=VALUES")
+      ->required();
+  one_of(verb.add_option("--sample", own->sample, "Points instead of combinations (256)"),
+         {"random", "latin", "sobol"});
+  within(verb.add_option("--points", own->points, "Of a sample (default: 256)"), "N",
+         std::size_t{1}, std::size_t{10'000'000});
+  verb.add_option("--seed", own->seed, "Of the sample (1); with Sobol indices")->type_name("N");
+  verb.add_flag("--indices", own->indices,
+                "Sobol indices too, from points times quantities + 2 cases");
+  verb.add_option("--watch", own->watch, "Columns of the trajectory: last, least and greatest")
+      ->type_name("COLUMN,...");
+  add_form(verb, o);
+  add_run_options(verb, o);
+  without(verb, {"--reference", "--figures"});
+  within(verb.add_option("--threads", own->threads,
+                         "Default: one a processor, under MPI 1; part of cases"),
+         "N", 1, 1024);
+  verb.add_option("--task", own->task,
+                  "Part I of N of the cases, kept in --out; without it: joined")
+      ->type_name("I/N");
+  return {&verb, [&o, own] { return sweep(o, *own); }};
 }
 
 }  // namespace momenta::program

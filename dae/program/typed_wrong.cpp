@@ -1,11 +1,11 @@
-#include "typed_wrong.h"
+// A wrong command line in one sentence.
 
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/solver/integrators.h>
 
 #include <algorithm>
 
-#include "values.h"
+#include "help.h"
 
 namespace momenta::program {
 namespace {

@@ -10,10 +10,11 @@
 
 #include <cmath>
 
-#include "answers.h"
+#include "equation_verbs.h"
 #include "loading.h"
-#include "progress_line.h"
+#include "progress.h"
 #include "results.h"
+#include "verb.h"
 
 namespace momenta::program {
 namespace {
@@ -34,6 +35,8 @@ std::vector<double> tolerance_rungs(const WorkOptions& w) {
     tolerances.push_back(w.loosest * std::pow(10.0, -static_cast<double>(i) / w.per_decade));
   return tolerances;
 }
+
+namespace {
 
 int work(const Options& o, const WorkOptions& w) {
   const auto mechanism = load(o);
@@ -94,6 +97,39 @@ int work(const Options& o, const WorkOptions& w) {
   return publish(
       study, (first.empty() ? "" : first + "\n") + (w.orders ? order_table(study) : advice(study)),
       o, journal.get(), std::move(files));
+}
+
+}  // namespace
+
+Verb declare_work(CLI::App& app, Options& o) {
+  const auto own = std::make_shared<WorkOptions>();
+  CLI::App& verb =
+      add_verb(app, "work", "Error against run time: every form over a series of tolerances",
+               "momenta work examples/four_bar/scene.toml --forms momentum --end 1");
+  add_scene(verb, o);
+  verb.add_option("--forms", own->forms, "Default: all")->type_name("FORM,...");
+  verb.add_option("--integrators", own->integrators, "Each for the forms it takes")
+      ->type_name("INTEGRATOR,...");
+  positive(verb.add_option("--from", own->loosest, "Loosest tolerance"), "X")
+      ->capture_default_str();
+  positive(verb.add_option("--to", own->tightest, "Tightest tolerance"), "X")
+      ->capture_default_str();
+  within(verb.add_option("--per-decade", own->per_decade, "Tolerances in a decade"), "X", 0.25,
+         100.0)
+      ->capture_default_str();
+  within(verb.add_option("--step-rungs", own->step_rungs,
+                         "Number of step sizes: 2*step, step, step/2 ..."),
+         "N", 1, 40)
+      ->capture_default_str();
+  verb.add_flag("--no-reference", own->no_reference,
+                "Judge by the largest drift alone; print orders");
+  verb.add_flag("--orders", own->orders, "Print observed orders in place of the conclusion");
+  add_run_options(verb, o, "10");
+  add_timing(verb, o);
+  without(verb, {"--integrator", "--rtol", "--atol", "--spectral-radius", "--project",
+                 "--no-project", "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"});
+  return {&verb, [&o, own] { return work(o, *own); },
+          [&o, own] { return work_on_equations(o, *own); }};
 }
 
 }  // namespace momenta::program

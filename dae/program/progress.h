@@ -1,5 +1,5 @@
 #pragma once
-// Progress of a study on a terminal, and its interruption.
+// Progress of a verb on a terminal, its interruption, and its limit of CPU time.
 
 #include <string>
 
@@ -21,6 +21,19 @@ class ProgressLine {
 
  private:
   bool active_;
+};
+
+/// --cpu-limit of verbs without runs: at the limit the program ends with a sentence and status 1,
+/// before it writes anything.
+class CpuLimit {
+ public:
+  /// Limit [s] from now, after `spent`; 0: none. The last object counts.
+  explicit CpuLimit(double seconds, double spent = 0);
+  ~CpuLimit() { lift(); }
+  CpuLimit(const CpuLimit&) = delete;
+  CpuLimit& operator=(const CpuLimit&) = delete;
+  /// Ends the limit, for write_results().
+  static void lift();
 };
 
 }  // namespace momenta::program
