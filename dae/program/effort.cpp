@@ -62,9 +62,7 @@ int effort(const Options& o, const EffortOptions& options) {
   request.weights = amounts_in("--weights", options.weights, "A=1,B=2");
   if (options.within) request.within = *options.within;
   const EffortResult result = momenta::effort(mechanism, request);
-  auto json = effort_json(result);
-  json["environment"] = environment_json(environment());
-  const std::string text = json.dump(2) + "\n";
+  const std::string text = json_text(effort_json(result));
   if (!o.out.empty()) {
     StudyResult study;
     if (const int intervals = film_intervals_of(mechanism, o, 1);

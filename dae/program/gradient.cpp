@@ -52,10 +52,7 @@ int gradient_verb(const Options& o, const GradientOptions& options) {
   };
   const GradientResult result = gradient(scene, request);
   line.show("");
-  auto json = gradient_json(result);
-  json["command"] = o.command;
-  json["environment"] = environment_json(environment());
-  const std::string text = json.dump(2) + "\n";
+  const std::string text = json_text(gradient_json(result), o.command);
   if (!o.out.empty()) {
     std::vector<ResultFile> files{{o.out / "gradient.json", text}};
     if (request.trajectory) files.push_back({o.out / "gradient.csv", gradient_csv(result)});

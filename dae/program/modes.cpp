@@ -55,9 +55,7 @@ int modes(const Options& o, const ModesOptions& m) {
                   : o.kkt == "sparse" ? Route::sparse
                                       : Route::automatic;
   const ModesResult result = find_modes(mechanism, a.start, request);
-  auto json = modes_json(result);
-  json["environment"] = environment_json(environment());
-  const std::string text = json.dump(2) + "\n";
+  const std::string text = json_text(modes_json(result));
   if (!o.out.empty()) {
     StudyResult study;
     film(study, mechanism, result);

@@ -37,9 +37,7 @@ int move(const Options& o, const MoveOptions& options) {
   request.by = options.by.value_or(0);
   request.singular_values = options.singular_values;
   const MoveResult result = momenta::move(mechanism, a.start.t, a.start.q, request);
-  auto json = move_json(result);
-  json["environment"] = environment_json(environment());
-  const std::string text = json.dump(2) + "\n";
+  const std::string text = json_text(move_json(result));
   if (!o.out.empty()) {
     StudyResult study;
     if (const int intervals = film_intervals_of(mechanism, o, 1); intervals > 0) {

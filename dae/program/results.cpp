@@ -163,6 +163,12 @@ void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, co
     files.push_back({o.out / "figures" / (figure.name + ".svg"), std::move(figure.svg)});
 }
 
+std::string json_text(nlohmann::ordered_json json, const std::string& command) {
+  if (!command.empty()) json["command"] = command;
+  json["environment"] = environment_json(environment());
+  return json.dump(2) + "\n";
+}
+
 void tell(const Options& o, const std::string& json, const std::string& table,
           const std::string& file) {
   if (o.json)

@@ -46,6 +46,9 @@ void expect_place_for_figures(const Options& o);
 /// Adds figures/ in --out.
 void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, const Options& o);
 
+/// The JSON of an answer, with the command, if that is told, and the machine behind it.
+std::string json_text(nlohmann::ordered_json json, const std::string& command = "");
+
 /// Prints JSON with --json, else the table, unless --quiet is given; and the file of --out to look
 /// at.
 void tell(const Options& o, const std::string& json, const std::string& table,
