@@ -10,13 +10,23 @@
 // Source        paper, eqs. (2), (3).
 
 #include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 namespace momenta {
 
-std::unique_ptr<OdeForm> make_acceleration(const Mechanism& mechanism, const FormOptions& options,
-                                           const Start& start) {
-  if (options.project) return make_projected(mechanism, options, start);
-  return std::make_unique<AccelerationForm>("acceleration", mechanism, options, start);
+FormEntry acceleration_entry() {
+  return {.name = "acceleration",
+          .bearings = true,
+          .colour = 1,
+          .place = 1,
+          .words = {.x = "u",
+                    .solved = "(3) for u̇ and λ",
+                    .constraints = {invariant(equation::rates), invariant(equation::positions)}},
+          .make = [](const Mechanism& mechanism, const FormOptions& options, const Start& start) {
+            if (options.project) return make_form("projected", mechanism, options, start);
+            return std::unique_ptr<Form>(
+                std::make_unique<AccelerationForm>("acceleration", mechanism, options, start));
+          }};
 }
 
 }  // namespace momenta

@@ -12,6 +12,7 @@
 
 #include <momenta/dae/form/acceleration_form.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 namespace momenta {
 namespace {
@@ -42,9 +43,20 @@ class AccelerationIndex1 final : public DaeFormOf<AccelerationIndex1> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_acceleration_index1(const Mechanism& mechanism, const FormOptions& o,
-                                               const Start& s) {
-  return make_acceleration_index1_with({}, mechanism, o, s);
+FormEntry acceleration_index1_entry() {
+  return {
+      .name = "acceleration-index1",
+      .kind = FormEntry::Kind::dae,
+      .bearings = true,
+      .colour = 1,
+      .place = 9,
+      .words = {.x = "v",
+                .s = "λ",
+                .constraints = {given(equation::accelerations, "λ"),
+                                invariant(equation::velocities), invariant(equation::positions)}},
+      .make = [](const Mechanism& mechanism, const FormOptions& options, const Start& start) {
+        return make_acceleration_index1_with({}, mechanism, options, start);
+      }};
 }
 
 std::unique_ptr<Form> make_acceleration_index1_with(Feedback feedback, const Mechanism& mechanism,

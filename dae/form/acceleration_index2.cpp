@@ -10,6 +10,7 @@
 //               Initial-Value Problems in DAEs
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/half_explicit_parts.h>
 #include <momenta/dae/kkt/unheld_joints.h>
 
@@ -83,9 +84,18 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
 
 }  // namespace
 
-std::unique_ptr<Form> make_acceleration_index2(const Mechanism& mechanism, const FormOptions& o,
-                                               const Start& s) {
-  return std::make_unique<AccelerationIndex2>(mechanism, o, s);
+FormEntry acceleration_index2_entry() {
+  return {.name = "acceleration-index2",
+          .kind = FormEntry::Kind::dae,
+          .bearings = true,
+          .colour = 5,
+          .place = 13,
+          .words = {.x = "v",
+                    .s = "λ",
+                    .constraints = {given(equation::velocities),
+                                    hidden(1, equation::accelerations, "λ"),
+                                    invariant(equation::positions)}},
+          .make = made<AccelerationIndex2>};
 }
 
 }  // namespace momenta

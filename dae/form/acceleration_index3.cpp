@@ -11,6 +11,7 @@
 
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/penalty.h>
 #include <momenta/dae/solver/system.h>
 
@@ -75,9 +76,19 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
 
 }  // namespace
 
-std::unique_ptr<Form> make_acceleration_index3(const Mechanism& mechanism, const FormOptions& o,
-                                               const Start& s) {
-  return std::make_unique<AccelerationIndex3>(mechanism, o, s);
+FormEntry acceleration_index3_entry() {
+  return {.name = "acceleration-index3",
+          .kind = FormEntry::Kind::dae,
+          .positions = true,
+          .bearings = true,
+          .lower_on_rates = true,
+          .colour = 3,
+          .place = 11,
+          .words = {.x = "v",
+                    .s = "λ",
+                    .constraints = {given(equation::positions), hidden(1, equation::velocities, ""),
+                                    hidden(2, equation::accelerations, "λ")}},
+          .make = made<AccelerationIndex3>};
 }
 
 }  // namespace momenta

@@ -22,6 +22,7 @@
 //               Methods Appl. Mech. Eng. 71 (1988).
 
 #include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/penalty.h>
 
 namespace momenta {
@@ -42,9 +43,16 @@ class AugmentedLagrangian final : public AccelerationForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_augmented_lagrangian(const Mechanism& mechanism,
-                                                   const FormOptions& options, const Start& start) {
-  return std::make_unique<AugmentedLagrangian>(mechanism, options, start);
+FormEntry augmented_lagrangian_entry() {
+  return {.name = "augmented-lagrangian",
+          .bearings = true,
+          .colour = 7,
+          .place = 7,
+          .words = {.x = "u",
+                    .solved = penalised_mass,
+                    .penalised = true,
+                    .constraints = {invariant(equation::rates), invariant(equation::positions)}},
+          .make = made<AugmentedLagrangian>};
 }
 
 }  // namespace momenta

@@ -15,6 +15,7 @@
 // Left out      ω² ∫Φ dt beside 2ξω Φ: it would add m unknowns, and Φ decays without it
 // Source        Bayo, Avello, Nonlinear Dynamics 5 (1994), the canonical equations; (6)-(8).
 
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/momentum_form.h>
 #include <momenta/dae/form/penalty.h>
 
@@ -38,10 +39,17 @@ class AugmentedLagrangianCanonical final : public MomentumForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_augmented_lagrangian_canonical(const Mechanism& mechanism,
-                                                             const FormOptions& options,
-                                                             const Start& start) {
-  return std::make_unique<AugmentedLagrangianCanonical>(mechanism, options, start);
+FormEntry augmented_lagrangian_canonical_entry() {
+  return {.name = "augmented-lagrangian-canonical",
+          .impulses = true,
+          .bearings = true,
+          .colour = 0,
+          .place = 14,
+          .words = {.x = "p",
+                    .solved = penalised_mass,
+                    .penalised = true,
+                    .constraints = {invariant(equation::positions)}},
+          .make = made<AugmentedLagrangianCanonical>};
 }
 
 }  // namespace momenta

@@ -14,13 +14,23 @@
 // Source        Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972).
 
 #include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 namespace momenta {
 
-std::unique_ptr<OdeForm> make_baumgarte(const Mechanism& mechanism, const FormOptions& options,
-                                        const Start& start) {
-  return std::make_unique<AccelerationForm>("baumgarte", mechanism, options, start,
-                                            feedback_of(mechanism, options, start));
+FormEntry baumgarte_entry() {
+  return {.name = "baumgarte",
+          .bearings = true,
+          .colour = 5,
+          .place = 5,
+          .words = {.x = "u",
+                    .solved = "(3) for u̇ and λ, with feedback of Φ and Φ̇",
+                    .constraints = {invariant(equation::rates), invariant(equation::positions)}},
+          .make = [](const Mechanism& mechanism, const FormOptions& options,
+                     const Start& start) -> std::unique_ptr<Form> {
+            return std::make_unique<AccelerationForm>("baumgarte", mechanism, options, start,
+                                                      feedback_of(mechanism, options, start));
+          }};
 }
 
 }  // namespace momenta

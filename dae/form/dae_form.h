@@ -293,13 +293,7 @@ class DaeFormOf : public DaeForm {
   }
 };
 
+/// `momentum-index1`, also where the scene has bearings.
 std::unique_ptr<Form> make_momentum_index1(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_momentum_index2(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_momentum_stabilised(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_momentum_index3(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_acceleration_index1(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_acceleration_index2(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_acceleration_index3(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<Form> make_stabilised_index2(const Mechanism&, const FormOptions&, const Start&);
 
 }  // namespace momenta

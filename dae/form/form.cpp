@@ -1,57 +1,75 @@
 #include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/form/dae_form.h>
-#include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 
+// clang-format off
+/// In the order of the tables.
+#define MOMENTA_FORMS(form)            \
+  form(momentum)                       \
+  form(momentum_index1)                \
+  form(momentum_index2)                \
+  form(momentum_stabilised)            \
+  form(momentum_index3)                \
+  form(augmented_lagrangian_canonical) \
+  form(acceleration)                   \
+  form(projected)                      \
+  form(partitioned)                    \
+  form(baumgarte)                      \
+  form(maximal_coordinates)            \
+  form(augmented_lagrangian)           \
+  form(acceleration_index1)            \
+  form(acceleration_index2)            \
+  form(acceleration_index3)            \
+  form(stabilised_index2)
+// clang-format on
+
 namespace momenta {
-namespace {
 
-using Maker =
-    std::function<std::unique_ptr<Form>(const Mechanism&, const FormOptions&, const Start&)>;
-enum class Kind { ode, ode_one_step, dae };
-struct Entry {
-  std::string name;
-  Kind kind;
-  bool impulses;   ///< σ among its unknowns or solved for: takes a gauge
-  bool positions;  ///< Φ = 0 among its equations, or met after each step
-  bool bearings;   ///< u̇ and forces of loops are found, as friction by reaction needs them
-  Maker make;
-};
+#define MOMENTA_DECLARED(form) FormEntry form##_entry();
+MOMENTA_FORMS(MOMENTA_DECLARED)
 
-const std::vector<Entry>& registry() {
-  static const std::vector<Entry> entries{
-      {"momentum", Kind::ode, true, false, true, make_momentum},
-      {"momentum-index1", Kind::dae, true, false, false, make_momentum_index1},
-      {"momentum-index2", Kind::dae, true, true, false, make_momentum_index2},
-      {"momentum-stabilised", Kind::dae, true, true, false, make_momentum_stabilised},
-      {"momentum-index3", Kind::dae, false, true, false, make_momentum_index3},
-      {"augmented-lagrangian-canonical", Kind::ode, true, false, true,
-       make_augmented_lagrangian_canonical},
-      {"acceleration", Kind::ode, false, false, true, make_acceleration},
-      {"projected", Kind::ode_one_step, false, true, true, make_projected},
-      {"partitioned", Kind::ode_one_step, false, true, true, make_partitioned},
-      {"baumgarte", Kind::ode, false, false, true, make_baumgarte},
-      {"maximal-coordinates", Kind::ode, false, false, false, make_maximal_coordinates},
-      {"augmented-lagrangian", Kind::ode, false, false, true, make_augmented_lagrangian},
-      {"acceleration-index1", Kind::dae, false, false, true, make_acceleration_index1},
-      {"acceleration-index2", Kind::dae, false, false, true, make_acceleration_index2},
-      {"acceleration-index3", Kind::dae, false, true, true, make_acceleration_index3},
-      {"stabilised-index2", Kind::dae, false, true, true, make_stabilised_index2},
-  };
-  return entries;
+const std::vector<FormEntry>& all_forms() {
+#define MOMENTA_LISTED(form) form##_entry(),
+  static const std::vector<FormEntry> all{MOMENTA_FORMS(MOMENTA_LISTED)};
+  return all;
 }
 
-const Entry& entry(const std::string& name) {
-  for (const auto& e : registry())
-    if (e.name == name) return e;
+const FormEntry* find_form(const std::string& name) {
+  for (const FormEntry& e : all_forms())
+    if (e.name == name) return &e;
+  return nullptr;
+}
+
+int FormEntry::index() const {
+  if (kind != Kind::dae) return 0;
+  int most = 0;
+  for (const Constraint& c : words.constraints) most = std::max(most, c.differentiations);
+  return 1 + most;
+}
+
+const char* name_of(Constraint::Origin origin) {
+  switch (origin) {
+    case Constraint::Origin::given:
+      return "given";
+    case Constraint::Origin::hidden:
+      return "hidden";
+    case Constraint::Origin::invariant:
+      return "invariant";
+  }
+  return "";
+}
+
+namespace {
+
+const FormEntry& entry(const std::string& name) {
+  if (const FormEntry* known = find_form(name)) return *known;
   std::vector<std::string_view> all;
-  for (const auto& e : registry()) all.push_back(e.name);
+  for (const FormEntry& e : all_forms()) all.push_back(e.name);
   throw std::invalid_argument("form " + reading::in_quotes(name) +
                               " is not known; expected one of " + reading::listed(all) +
                               reading::did_you_mean(name, all));
@@ -89,14 +107,14 @@ Gauge parse_gauge(const std::string& text) {
 const std::vector<std::string>& form_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const auto& e : registry()) all.push_back(e.name);
+    for (const FormEntry& e : all_forms()) all.push_back(e.name);
     return all;
   }();
   return names;
 }
 
 bool is_dae_form(const std::string& name) {
-  return entry(name).kind == Kind::dae;
+  return entry(name).kind == FormEntry::Kind::dae;
 }
 
 bool takes_gauge(const std::string& name) {
@@ -104,7 +122,7 @@ bool takes_gauge(const std::string& name) {
 }
 
 bool needs_one_step_method(const std::string& name) {
-  return entry(name).kind == Kind::ode_one_step;
+  return entry(name).kind == FormEntry::Kind::ode_one_step;
 }
 
 bool holds_positions(const std::string& name) {
@@ -113,15 +131,16 @@ bool holds_positions(const std::string& name) {
 
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
                                 const FormOptions& options, const Start& start) {
-  const Entry& e = entry(name);
-  if (e.kind == Kind::dae && options.project)
+  const FormEntry& e = entry(name);
+  if (e.kind == FormEntry::Kind::dae && options.project)
     throw std::invalid_argument("position correction after steps needs a one-step method; '" +
                                 name + "' is integrated by IDA, expected an ODE form");
   if (const JointSpec* joint = with_bearing(mechanism.scene()); joint && !e.bearings)
     throw std::invalid_argument(
         "joint '" + joint->name + "' has a bearing, whose friction takes accelerations and " +
         "forces of loops: form '" + name + "' has " +
-        (e.kind == Kind::dae ? "no accelerations among its unknowns" : "no place for it") +
+        (e.kind == FormEntry::Kind::dae ? "no accelerations among its unknowns"
+                                        : "no place for it") +
         "; expected 'momentum', 'acceleration' or another form");
   return e.make(mechanism, options, start);
 }

@@ -21,6 +21,7 @@
 // Source        Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH 1996.
 
 #include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 namespace momenta {
@@ -56,9 +57,15 @@ class MaximalCoordinates final : public AccelerationForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_maximal_coordinates(const Mechanism& mechanism,
-                                                  const FormOptions& options, const Start& start) {
-  return std::make_unique<MaximalCoordinates>(mechanism, options, start);
+FormEntry maximal_coordinates_entry() {
+  return {.name = "maximal-coordinates",
+          .colour = 7,
+          .place = 15,
+          .words = {.x = "u",
+                    .solved = "accelerations of all bodies, reactions of all joints and λ, with "
+                              "feedback of Φ and Φ̇",
+                    .constraints = {invariant(equation::rates), invariant(equation::positions)}},
+          .make = made<MaximalCoordinates>};
 }
 
 }  // namespace momenta

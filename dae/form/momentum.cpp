@@ -20,6 +20,7 @@
 // Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48), momentum_recursion.h.
 // Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear Dynamics 5 (1994).
 
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/form/momentum_form.h>
 
@@ -38,6 +39,18 @@ class Momentum final : public MomentumForm, public HamiltonianParts {
 std::unique_ptr<OdeForm> make_momentum(const Mechanism& mechanism, const FormOptions& options,
                                        const Start& start) {
   return std::make_unique<Momentum>(mechanism, options, start);
+}
+
+FormEntry momentum_entry() {
+  return {.name = "momentum",
+          .impulses = true,
+          .bearings = true,
+          .colour = 0,
+          .place = 0,
+          .words = {.x = "p",
+                    .solved = "(7) for u and σ",
+                    .constraints = {invariant(equation::positions)}},
+          .make = make_momentum};
 }
 
 }  // namespace momenta

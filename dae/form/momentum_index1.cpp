@@ -10,6 +10,7 @@
 // Source        paper, eqs. (6)-(8)
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/impulse_gauge.h>
 
 namespace momenta {
@@ -43,6 +44,19 @@ class MomentumIndex1 final : public DaeFormOf<MomentumIndex1>, public ImpulseGau
 std::unique_ptr<Form> make_momentum_index1(const Mechanism& mechanism, const FormOptions& o,
                                            const Start& s) {
   return std::make_unique<MomentumIndex1>(mechanism, o, s);
+}
+
+FormEntry momentum_index1_entry() {
+  return {
+      .name = "momentum-index1",
+      .kind = FormEntry::Kind::dae,
+      .impulses = true,
+      .colour = 0,
+      .place = 8,
+      .words = {.x = "p",
+                .s = "σ",
+                .constraints = {given(equation::of_momenta, "σ"), invariant(equation::positions)}},
+      .make = make_momentum_index1};
 }
 
 }  // namespace momenta

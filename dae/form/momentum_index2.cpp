@@ -11,6 +11,7 @@
 // Source        paper, eqs. (6)-(8), with the constraint at position level
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/half_explicit_parts.h>
 #include <momenta/dae/form/impulse_gauge.h>
 #include <momenta/dae/kkt/unheld_joints.h>
@@ -138,9 +139,19 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
 
 }  // namespace
 
-std::unique_ptr<Form> make_momentum_index2(const Mechanism& mechanism, const FormOptions& o,
-                                           const Start& s) {
-  return std::make_unique<MomentumIndex2>(mechanism, o, s);
+FormEntry momentum_index2_entry() {
+  return {
+      .name = "momentum-index2",
+      .kind = FormEntry::Kind::dae,
+      .impulses = true,
+      .positions = true,
+      .lower_on_rates = true,
+      .colour = 6,
+      .place = 6,
+      .words = {.x = "p",
+                .s = "σ",
+                .constraints = {given(equation::positions), hidden(1, equation::of_momenta, "σ")}},
+      .make = made<MomentumIndex2>};
 }
 
 }  // namespace momenta

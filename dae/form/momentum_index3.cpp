@@ -13,6 +13,7 @@
 //               Initial-Value Problems in DAEs
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 namespace momenta {
 namespace {
@@ -35,9 +36,21 @@ class MomentumIndex3 final : public DaeFormOf<MomentumIndex3> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_momentum_index3(const Mechanism& mechanism, const FormOptions& o,
-                                           const Start& s) {
-  return std::make_unique<MomentumIndex3>(mechanism, o, s);
+FormEntry momentum_index3_entry() {
+  return {
+      .name = "momentum-index3",
+      .kind = FormEntry::Kind::dae,
+      .positions = true,
+      .lower_on_rates = true,
+      .colour = 6,
+      .place = 12,
+      .words = {.x = "p",
+                .s = "λ",
+                .constraints = {given(equation::positions), hidden(1, "Φ̇ = Φ_q M⁻¹p + Φ_t = 0", ""),
+                                hidden(2,
+                                       "Φ̈ = Φ_q M⁻¹ṗ + d/dt(Φ_q M⁻¹) p + Φ̇_t = 0 with ṗ from (5b)",
+                                       "λ")}},
+      .make = made<MomentumIndex3>};
 }
 
 }  // namespace momenta

@@ -10,6 +10,7 @@
 //               Math. 12 (1985)
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/impulse_gauge.h>
 
 namespace momenta {
@@ -38,9 +39,21 @@ class MomentumStabilised final : public DaeFormOf<MomentumStabilised>, public Im
 
 }  // namespace
 
-std::unique_ptr<Form> make_momentum_stabilised(const Mechanism& mechanism, const FormOptions& o,
-                                               const Start& s) {
-  return std::make_unique<MomentumStabilised>(mechanism, o, s);
+FormEntry momentum_stabilised_entry() {
+  return {.name = "momentum-stabilised",
+          .kind = FormEntry::Kind::dae,
+          .impulses = true,
+          .positions = true,
+          .lower_on_rates = true,
+          .colour = 2,
+          .place = 2,
+          .words = {.x = "p",
+                    .s = "σ",
+                    .constraints = {{Constraint::Origin::given, 0, 1, 0, "M v + Φ_qᵀσ = p", "v"},
+                                    given(equation::velocities, "σ"),
+                                    given(equation::positions),
+                                    hidden(1, equation::of_stabilised, "μ")}},
+          .make = made<MomentumStabilised>};
 }
 
 }  // namespace momenta

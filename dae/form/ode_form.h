@@ -135,15 +135,5 @@ class OdeForm : public Form, public OdeSystem {
 };
 
 std::unique_ptr<OdeForm> make_momentum(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<OdeForm> make_acceleration(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<OdeForm> make_projected(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<OdeForm> make_partitioned(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<OdeForm> make_baumgarte(const Mechanism&, const FormOptions&, const Start&);
-std::unique_ptr<OdeForm> make_maximal_coordinates(const Mechanism&, const FormOptions&,
-                                                  const Start&);
-std::unique_ptr<OdeForm> make_augmented_lagrangian(const Mechanism&, const FormOptions&,
-                                                   const Start&);
-std::unique_ptr<OdeForm> make_augmented_lagrangian_canonical(const Mechanism&, const FormOptions&,
-                                                             const Start&);
 
 }  // namespace momenta

@@ -26,6 +26,7 @@
 // Source        Wehage, Haug, J. Mech. Design 104 (1982); Nikravesh, Computer-Aided Analysis of
 //               Mechanical Systems (1988), with Euler parameters.
 
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/kkt/coordinate_jacobian.h>
 #include <momenta/dae/kkt/coordinate_split.h>
@@ -339,9 +340,18 @@ class Partitioned final : public OdeForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_partitioned(const Mechanism& mechanism, const FormOptions& options,
-                                          const Start& start) {
-  return std::make_unique<Partitioned>(mechanism, options, start);
+FormEntry partitioned_entry() {
+  return {.name = "partitioned",
+          .kind = FormEntry::Kind::ode_one_step,
+          .positions = true,
+          .bearings = true,
+          .colour = 2,
+          .place = 10,
+          .words = {.x = "u",
+                    .solved = "(3) for u̇, with independent q and u for unknowns",
+                    .constraints = {given(equation::positions, "dependent q"),
+                                    given(equation::rates, "dependent u")}},
+          .make = made<Partitioned>};
 }
 
 }  // namespace momenta

@@ -18,6 +18,7 @@
 //               Dynamics 6 (2001), the mass metric.
 
 #include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,9 +57,17 @@ class Projected final : public AccelerationForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_projected(const Mechanism& mechanism, const FormOptions& options,
-                                        const Start& start) {
-  return std::make_unique<Projected>(mechanism, options, start);
+FormEntry projected_entry() {
+  return {.name = "projected",
+          .kind = FormEntry::Kind::ode_one_step,
+          .positions = true,
+          .bearings = true,
+          .colour = 4,
+          .place = 4,
+          .words = {.x = "u",
+                    .solved = "(3) for u̇ and λ; Φ and Φ̇ put to zero after each step",
+                    .constraints = {invariant(equation::rates), invariant(equation::positions)}},
+          .make = made<Projected>};
 }
 
 }  // namespace momenta

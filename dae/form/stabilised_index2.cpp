@@ -9,6 +9,7 @@
 // Source        Gear, Gupta, Leimkuhler, J. Comput. Appl. Math. 12 (1985)
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/form_entry.h>
 
 namespace momenta {
 namespace {
@@ -29,9 +30,19 @@ class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_stabilised_index2(const Mechanism& mechanism, const FormOptions& o,
-                                             const Start& s) {
-  return std::make_unique<StabilisedIndex2>(mechanism, o, s);
+FormEntry stabilised_index2_entry() {
+  return {.name = "stabilised-index2",
+          .kind = FormEntry::Kind::dae,
+          .positions = true,
+          .bearings = true,
+          .colour = 3,
+          .place = 3,
+          .words = {.x = "v",
+                    .s = "λ",
+                    .constraints = {given(equation::velocities), given(equation::positions),
+                                    hidden(1, equation::of_stabilised, "μ"),
+                                    hidden(1, equation::accelerations, "λ")}},
+          .make = made<StabilisedIndex2>};
 }
 
 }  // namespace momenta

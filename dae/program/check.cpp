@@ -5,6 +5,7 @@
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/passed_limits.h>
 
@@ -19,35 +20,13 @@
 namespace momenta::program {
 namespace {
 
-struct FormIndex {
-  const char *form, *index;
-};
-constexpr FormIndex indices[] = {
-    {"momentum", "ODE"},
-    {"momentum-index1", "1"},
-    {"momentum-index2", "2"},
-    {"momentum-stabilised", "2"},
-    {"momentum-index3", "3"},
-    {"augmented-lagrangian-canonical", "ODE"},
-    {"acceleration", "ODE"},
-    {"projected", "ODE"},
-    {"partitioned", "ODE"},
-    {"baumgarte", "ODE"},
-    {"maximal-coordinates", "ODE"},
-    {"augmented-lagrangian", "ODE"},
-    {"acceleration-index1", "1"},
-    {"acceleration-index2", "2"},
-    {"acceleration-index3", "3"},
-    {"stabilised-index2", "2"},
-};
-
 /// Index of a form. Without rows of positions, where all are A u = b, forms with Φ = 0 have A u = b
 /// in its place.
-std::string index_of(const Mechanism& mechanism, const std::string& form, const char* index) {
-  if (count_nonholonomic(mechanism) < mechanism.m()) return index;
-  if (form == "momentum-index2" || form == "momentum-stabilised") return "1";
-  if (form == "momentum-index3" || form == "acceleration-index3") return "2";
-  return index;
+std::string index_of(const Mechanism& mechanism, const FormEntry& form) {
+  if (mechanism.m() == 0) return "ODE: no loops";
+  if (form.index() == 0) return "ODE";
+  const bool on_rates = count_nonholonomic(mechanism) >= mechanism.m();
+  return "index " + std::to_string(form.index() - (on_rates && form.lower_on_rates));
 }
 
 void print_counts(const Checked& c) {
@@ -116,11 +95,8 @@ void print_operations(const Checked& c) {
 
 void print_forms(const Checked& c) {
   std::printf("\nForms\n");
-  for (const auto& form : indices)
-    std::printf("  %-30s %s%s\n", form.form,
-                c.mechanism.m() == 0 || form.index[0] == 'O' ? "" : "index ",
-                c.mechanism.m() > 0 ? index_of(c.mechanism, form.form, form.index).c_str()
-                                    : "ODE: no loops");
+  for (const FormEntry& form : all_forms())
+    std::printf("  %-30s %s\n", form.name.c_str(), index_of(c.mechanism, form).c_str());
 }
 
 }  // namespace

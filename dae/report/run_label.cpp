@@ -1,3 +1,4 @@
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/text/number_text.h>
 
@@ -68,37 +69,15 @@ std::vector<std::size_t> runs_with_curves(const StudyResult& study) {
 
 namespace {
 
-struct Preferred {
-  const char* form;
-  int colour;
-};
-/// Every form has its colour on all pages; beyond eight, later ones share it with a dash.
-constexpr std::array<Preferred, 16> preferred{{{"momentum", 0},
-                                               {"acceleration", 1},
-                                               {"momentum-stabilised", 2},
-                                               {"stabilised-index2", 3},
-                                               {"projected", 4},
-                                               {"baumgarte", 5},
-                                               {"momentum-index2", 6},
-                                               {"augmented-lagrangian", 7},
-                                               {"momentum-index1", 0},
-                                               {"acceleration-index1", 1},
-                                               {"partitioned", 2},
-                                               {"acceleration-index3", 3},
-                                               {"momentum-index3", 6},
-                                               {"acceleration-index2", 5},
-                                               {"augmented-lagrangian-canonical", 0},
-                                               {"maximal-coordinates", 7}}};
-
 const std::array<std::vector<double>, 6> dashes{
     {{}, {9, 5}, {2, 4}, {12, 4, 2, 4}, {16, 6}, {2, 8}}};
 constexpr std::array<const char*, 6> markers{"circle",  "square", "triangle",
                                              "diamond", "plus",   "star"};
 
-std::size_t rank(const std::string& form) {
-  const auto found = std::find_if(preferred.begin(), preferred.end(),
-                                  [&](const Preferred& p) { return form == p.form; });
-  return static_cast<std::size_t>(found - preferred.begin());
+/// Where the form chooses its colour.
+int place(const std::string& form) {
+  const FormEntry* known = find_form(form);
+  return known ? known->place : FormEntry().place;
 }
 
 template <class List>
@@ -115,12 +94,13 @@ std::vector<Sign> signs_of(const StudyResult& study) {
     add_once(integrators, run.settings.integrator);
   }
   std::stable_sort(forms.begin(), forms.end(),
-                   [](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+                   [](const std::string& a, const std::string& b) { return place(a) < place(b); });
   std::array<std::size_t, palette.size()> uses{};
   std::map<std::string, std::pair<int, std::size_t>> colour_and_round;
   for (const std::string& form : forms) {
-    const bool known = rank(form) < preferred.size();
-    auto colour = static_cast<std::size_t>(known ? preferred[rank(form)].colour : 0);
+    const FormEntry* entry = find_form(form);
+    const bool known = entry && entry->colour >= 0;
+    auto colour = static_cast<std::size_t>(known ? entry->colour : 0);
     const auto least = std::min_element(uses.begin(), uses.end());
     if (uses[colour] > 0 && (*least == 0 || !known))
       colour = static_cast<std::size_t>(least - uses.begin());

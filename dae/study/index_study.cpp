@@ -168,7 +168,7 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
     FormIndex f;
     f.form = name;
     f.dae = is_dae_form(name);
-    f.words = in_words(name);
+    f.words = find_form(name)->words;
     if (!f.dae) {
       f.unknowns = mechanism.nq() + mechanism.nv();
       // M + Φ_qᵀαΦ_q is regular where M is.

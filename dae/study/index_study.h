@@ -2,9 +2,9 @@
 // The index of each form of one mechanism at one consistent state, and whether the convergence
 // theory of IDA's method covers it.
 
+#include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/measure/derivative_array.h>
 #include <momenta/dae/mechanism.h>
-#include <momenta/dae/study/constraints_in_words.h>
 
 #include <functional>
 

@@ -47,7 +47,7 @@ void expect_promised(const Mechanism& mechanism, const Start& start, double leas
   ASSERT_EQ(study.forms.size(), form_names().size());
   for (const FormIndex& f : study.forms) {
     SCOPED_TRACE(study.scene + ", " + f.form);
-    EXPECT_FALSE(f.words.x.empty()) << "dae/study/constraints_in_words.cpp does not know it";
+    EXPECT_FALSE(f.words.x.empty()) << "its entry has no words";
     if (!f.dae) {
       EXPECT_EQ(f.inner.rank, f.inner_size);
       EXPECT_GT(f.inner.gap(), least);
