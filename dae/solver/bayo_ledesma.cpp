@@ -18,6 +18,7 @@
 // Multibody System Dynamics 4 (2000) 55-73.
 
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/newmark.h>
 
 namespace momenta {
@@ -29,6 +30,17 @@ IntegrationResult integrate_bayo_ledesma(DaeSystem& system, double t0,
   NewmarkRule rule;
   rule.augmented = true;
   return integrate_newmark("bayo-ledesma", rule, system, t0, output_times, options, observer);
+}
+
+Integrator bayo_ledesma_integrator() {
+  return {.name = "bayo-ledesma",
+          .takes = Integrator::Takes::dae,
+          .method =
+              "augmented Lagrangian of index 3, trapezoidal rule and mass-orthogonal "
+              "projections, order 2",
+          .forms = {"acceleration-index3"},
+          .closes = {"acceleration-index3"},
+          .dae_run = integrate_bayo_ledesma};
 }
 
 }  // namespace momenta

@@ -15,6 +15,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/bdf_step.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/ode_restart.h>
 
@@ -238,6 +239,17 @@ IntegrationResult integrate_bdf5(DaeSystem& system, double t0,
   const bool started = method.start(t0);
   return run_from_start(method, started, system.failure(), system, t0, output_times, options,
                         observer);
+}
+
+Integrator bdf5_integrator() {
+  return {.name = "bdf5",
+          .takes = Integrator::Takes::dae,
+          .step = Integrator::Step::adaptive,
+          .multistep = true,
+          .method = "BDF of orders 1 to 5 on past values, whose gauge moves",
+          .resets = true,
+          .gauge = Integrator::Preferred::reset,
+          .dae_run = integrate_bdf5};
 }
 
 }  // namespace momenta

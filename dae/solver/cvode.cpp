@@ -14,6 +14,7 @@
 #include <cvode/cvode_proj.h>
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/sundials_handles.h>
 #include <sunlinsol/sunlinsol_dense.h>
@@ -234,6 +235,34 @@ IntegrationResult integrate_cvode(const std::string& method, OdeSystem& system, 
   MultistepRun<Cvode>(cvode, system.size(), t0, output_times, options, observer).run(result);
   result.counters = cvode.counters();
   return result;
+}
+
+namespace {
+
+template <bool stiff>
+IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<double>& y0,
+                            const std::vector<double>& output_times,
+                            const IntegrationOptions& options, const Observer& observer) {
+  return integrate_cvode(stiff ? "bdf" : "adams", system, t0, y0, output_times, options, observer);
+}
+
+}  // namespace
+
+Integrator adams_integrator() {
+  return {.name = "adams",
+          .step = Integrator::Step::adaptive,
+          .multistep = true,
+          .method = "CVODE, Adams-Moulton of orders 1 to 12",
+          .ode_run = integrate<false>};
+}
+
+Integrator bdf_integrator() {
+  return {.name = "bdf",
+          .step = Integrator::Step::adaptive,
+          .multistep = true,
+          .projects = true,
+          .method = "CVODE, BDF of orders 1 to 5",
+          .ode_run = integrate<true>};
 }
 
 }  // namespace momenta

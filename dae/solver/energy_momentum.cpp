@@ -35,6 +35,7 @@
 #include <momenta/dae/solver/constrained_steps.h>
 #include <momenta/dae/solver/cyclic_coordinates.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 
 #include <Eigen/Cholesky>
 
@@ -227,6 +228,15 @@ IntegrationResult integrate_energy_momentum(OdeSystem& system, double t0,
         "energy-momentum balances the work of forces: expected no prescribed motion, found one, "
         "whose drive does work too");
   return constrained::integrate<EnergyMomentum>(system, t0, y0, output_times, options, observer);
+}
+
+Integrator energy_momentum_integrator() {
+  return {.name = "energy-momentum",
+          .method = "energy-momentum scheme, order 2",
+          .forms = {"momentum"},
+          .closes = {"momentum"},
+          .hamiltonian = true,
+          .ode_run = integrate_energy_momentum};
 }
 
 }  // namespace momenta

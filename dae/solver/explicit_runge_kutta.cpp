@@ -1,6 +1,7 @@
 // Explicit Runge-Kutta methods by name: their tableaux, and checks of options.
 
 #include <momenta/dae/solver/explicit_run.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/tableau_dop853.h>
 #include <momenta/dae/solver/tableau_dp5.h>
 #include <momenta/dae/solver/tableau_rk4.h>
@@ -36,6 +37,16 @@ IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<doub
   return explicit_rk::ExplicitRun<Tableau>(system, t0, y0, output_times, options, observer).run();
 }
 
+template <class Tableau>
+Integrator explicit_integrator(const char* method) {
+  constexpr bool adaptive = Tableau::estimates > 0;
+  return {.name = Tableau::name,
+          .step = adaptive ? Integrator::Step::adaptive : Integrator::Step::fixed,
+          .projects = true,
+          .method = method,
+          .ode_run = integrate<Tableau>};
+}
+
 }  // namespace
 
 IntegrationResult integrate_explicit(const std::string& method, OdeSystem& system, double t0,
@@ -53,6 +64,22 @@ IntegrationResult integrate_explicit(const std::string& method, OdeSystem& syste
     return integrate<TableauVern9>(system, t0, y0, output_times, options, observer);
   throw std::invalid_argument("no explicit method \"" + method +
                               "\": rk4, dp5, dop853, vern9 are known");
+}
+
+Integrator rk4_integrator() {
+  return explicit_integrator<explicit_rk::TableauRk4>("classical Runge-Kutta, order 4");
+}
+
+Integrator dp5_integrator() {
+  return explicit_integrator<explicit_rk::TableauDp5>("Dormand-Prince 5(4)");
+}
+
+Integrator dop853_integrator() {
+  return explicit_integrator<explicit_rk::TableauDop853>("Dormand-Prince 8(5,3)");
+}
+
+Integrator vern9_integrator() {
+  return explicit_integrator<explicit_rk::TableauVern9>("Verner 9(8)");
 }
 
 }  // namespace momenta

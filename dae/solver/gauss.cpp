@@ -12,6 +12,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/gauss_stages.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/output_cursor.h>
 
@@ -175,6 +176,31 @@ IntegrationResult integrate_gauss(int stages, OdeSystem& system, double t0,
                                 " has no error estimate and needs a fixed step > 0");
   return stages == 2 ? run<2>(system, t0, y0, output_times, options, observer)
                      : run<3>(system, t0, y0, output_times, options, observer);
+}
+
+namespace {
+
+template <int stages>
+IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<double>& y0,
+                            const std::vector<double>& output_times,
+                            const IntegrationOptions& options, const Observer& observer) {
+  return integrate_gauss(stages, system, t0, y0, output_times, options, observer);
+}
+
+}  // namespace
+
+Integrator gauss4_integrator() {
+  return {.name = "gauss4",
+          .projects = true,
+          .method = "Gauss collocation, 2 stages, order 4",
+          .ode_run = integrate<2>};
+}
+
+Integrator gauss6_integrator() {
+  return {.name = "gauss6",
+          .projects = true,
+          .method = "Gauss collocation, 3 stages, order 6",
+          .ode_run = integrate<3>};
 }
 
 }  // namespace momenta

@@ -10,6 +10,7 @@
 // Dynamics 18 (2007) 185-202.
 
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/newmark.h>
 
 #include <stdexcept>
@@ -29,6 +30,15 @@ IntegrationResult integrate_generalised_alpha(DaeSystem& system, double t0,
   rule.gamma = 0.5 + rule.f - rule.m;
   rule.beta = 0.25 * (rule.gamma + 0.5) * (rule.gamma + 0.5);
   return integrate_newmark("generalised-alpha", rule, system, t0, output_times, options, observer);
+}
+
+Integrator generalised_alpha_integrator() {
+  return {.name = "generalised-alpha",
+          .takes = Integrator::Takes::dae,
+          .method = "generalised-α, order 2",
+          .forms = {"acceleration-index3"},
+          .closes = {"acceleration-index3"},
+          .dae_run = integrate_generalised_alpha};
 }
 
 }  // namespace momenta

@@ -12,6 +12,7 @@
 
 #include <momenta/dae/solver/half_explicit_run.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/tableau_hem5.h>
 
 #include <vector>
@@ -102,6 +103,18 @@ IntegrationResult integrate_hem5(DaeSystem& system, double t0,
                                  const std::vector<double>& output_times,
                                  const IntegrationOptions& options, const Observer& observer) {
   return integrate_half_explicit<Hem5>(system, t0, output_times, options, observer);
+}
+
+Integrator hem5_integrator() {
+  return {.name = "hem5",
+          .takes = Integrator::Takes::dae,
+          .step = Integrator::Step::adaptive,
+          .method = "half-explicit Runge-Kutta, order 5",
+          .forms = {"acceleration-index2", "momentum-index2"},
+          .resets = true,
+          .gauge = Integrator::Preferred::reset_of_independent,
+          .closes = {"momentum-index2"},
+          .dae_run = integrate_hem5};
 }
 
 }  // namespace momenta

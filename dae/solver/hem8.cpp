@@ -31,6 +31,7 @@
 #include <momenta/dae/solver/dense_output.h>
 #include <momenta/dae/solver/half_explicit_run.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stage_sum.h>
 #include <momenta/dae/solver/tableau_dop853.h>
 
@@ -140,6 +141,17 @@ IntegrationResult integrate_hem8(DaeSystem& system, double t0,
                                  const std::vector<double>& output_times,
                                  const IntegrationOptions& options, const Observer& observer) {
   return integrate_half_explicit<Hem8>(system, t0, output_times, options, observer);
+}
+
+Integrator hem8_integrator() {
+  return {.name = "hem8",
+          .takes = Integrator::Takes::dae,
+          .step = Integrator::Step::adaptive,
+          .method = "half-explicit Runge-Kutta on the hidden constraint, order 8",
+          .forms = {"acceleration-index2", "momentum-index2"},
+          .resets = true,
+          .gauge = Integrator::Preferred::reset,
+          .dae_run = integrate_hem8};
 }
 
 }  // namespace momenta

@@ -17,6 +17,7 @@
 #include <momenta/dae/solver/filtered_error.h>
 #include <momenta/dae/solver/ida_matrix.h>
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/rounding_floor.h>
 #include <momenta/dae/solver/sundials_handles.h>
@@ -372,6 +373,15 @@ IntegrationResult integrate_ida(DaeSystem& system, double t0,
   run_with_ode_restarts(ida, system, t0, output_times, options, observer, result);
   if (has_span) result.counters += ida.counters();
   return result;
+}
+
+Integrator ida_integrator() {
+  return {.name = "ida",
+          .takes = Integrator::Takes::dae,
+          .step = Integrator::Step::adaptive,
+          .multistep = true,
+          .method = "IDA, BDF of orders 1 to 5",
+          .dae_run = integrate_ida};
 }
 
 }  // namespace momenta

@@ -1,17 +1,34 @@
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/integrators.h>
 
 #include <stdexcept>
 
+// clang-format off
+/// In the order of the tables.
+#define MOMENTA_INTEGRATORS(integrator) \
+  integrator(rk4)                       \
+  integrator(dp5)                       \
+  integrator(dop853)                    \
+  integrator(vern9)                     \
+  integrator(adams)                     \
+  integrator(bdf)                       \
+  integrator(gauss4)                    \
+  integrator(gauss6)                    \
+  integrator(rattle)                    \
+  integrator(energy_momentum)           \
+  integrator(ida)                       \
+  integrator(bdf5)                      \
+  integrator(radau5)                    \
+  integrator(generalised_alpha)         \
+  integrator(bayo_ledesma)              \
+  integrator(hem5)                      \
+  integrator(hem8)
+// clang-format on
+
 namespace momenta {
-namespace {
 
-using Takes = Integrator::Takes;
-using Step = Integrator::Step;
-using Gauge = Integrator::Preferred;
-
-}  // namespace
+#define MOMENTA_DECLARED(integrator) Integrator integrator##_integrator();
+MOMENTA_INTEGRATORS(MOMENTA_DECLARED)
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -23,142 +40,8 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 const std::vector<Integrator>& integrators() {
-  static const std::vector<Integrator> all{
-      {.name = "rk4",
-       .takes = Takes::ode,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = true,
-       .method = "classical Runge-Kutta, order 4",
-       .forms = {}},
-      {.name = "dp5",
-       .takes = Takes::ode,
-       .step = Step::adaptive,
-       .multistep = false,
-       .projects = true,
-       .method = "Dormand-Prince 5(4)",
-       .forms = {}},
-      {.name = "dop853",
-       .takes = Takes::ode,
-       .step = Step::adaptive,
-       .multistep = false,
-       .projects = true,
-       .method = "Dormand-Prince 8(5,3)",
-       .forms = {}},
-      {.name = "vern9",
-       .takes = Takes::ode,
-       .step = Step::adaptive,
-       .multistep = false,
-       .projects = true,
-       .method = "Verner 9(8)",
-       .forms = {}},
-      {.name = "adams",
-       .takes = Takes::ode,
-       .step = Step::adaptive,
-       .multistep = true,
-       .projects = false,
-       .method = "CVODE, Adams-Moulton of orders 1 to 12",
-       .forms = {}},
-      {.name = "bdf",
-       .takes = Takes::ode,
-       .step = Step::adaptive,
-       .multistep = true,
-       .projects = true,
-       .method = "CVODE, BDF of orders 1 to 5",
-       .forms = {}},
-      {.name = "gauss4",
-       .takes = Takes::ode,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = true,
-       .method = "Gauss collocation, 2 stages, order 4",
-       .forms = {}},
-      {.name = "gauss6",
-       .takes = Takes::ode,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = true,
-       .method = "Gauss collocation, 3 stages, order 6",
-       .forms = {}},
-      {.name = "rattle",
-       .takes = Takes::ode,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = false,
-       .method = "RATTLE, order 2",
-       .forms = {"momentum"},
-       .closes = {"momentum"},
-       .hamiltonian = true},
-      {.name = "energy-momentum",
-       .takes = Takes::ode,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = false,
-       .method = "energy-momentum scheme, order 2",
-       .forms = {"momentum"},
-       .closes = {"momentum"},
-       .hamiltonian = true},
-      {.name = "ida",
-       .takes = Takes::dae,
-       .step = Step::adaptive,
-       .multistep = true,
-       .projects = false,
-       .method = "IDA, BDF of orders 1 to 5",
-       .forms = {}},
-      {.name = "bdf5",
-       .takes = Takes::dae,
-       .step = Step::adaptive,
-       .multistep = true,
-       .projects = false,
-       .method = "BDF of orders 1 to 5 on past values, whose gauge moves",
-       .forms = {},
-       .resets = true,
-       .gauge = Gauge::reset},
-      {.name = "radau5",
-       .takes = Takes::dae,
-       .step = Step::adaptive,
-       .multistep = false,
-       .projects = false,
-       .method = "Radau IIA, order 5",
-       .forms = {},
-       .resets = true},
-      {.name = "generalised-alpha",
-       .takes = Takes::dae,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = false,
-       .method = "generalised-α, order 2",
-       .forms = {"acceleration-index3"},
-       .closes = {"acceleration-index3"}},
-      {.name = "bayo-ledesma",
-       .takes = Takes::dae,
-       .step = Step::fixed,
-       .multistep = false,
-       .projects = false,
-       .method = "augmented Lagrangian of index 3, trapezoidal rule and mass-orthogonal "
-                 "projections, order 2",
-       .forms = {"acceleration-index3"},
-       .closes = {"acceleration-index3"}},
-      {.name = "hem5",
-       .takes = Takes::dae,
-       .step = Step::adaptive,
-       .multistep = false,
-       .projects = false,
-       .method = "half-explicit Runge-Kutta, order 5",
-       .forms = {"acceleration-index2", "momentum-index2"},
-       .resets = true,
-       .gauge = Gauge::reset_of_independent,
-       .closes = {"momentum-index2"}},
-      {.name = "hem8",
-       .takes = Takes::dae,
-       .step = Step::adaptive,
-       .multistep = false,
-       .projects = false,
-       .method = "half-explicit Runge-Kutta on the hidden constraint, order 8",
-       .forms = {"acceleration-index2", "momentum-index2"},
-       .resets = true,
-       .gauge = Gauge::reset},
-  };
+#define MOMENTA_LISTED(integrator) integrator##_integrator(),
+  static const std::vector<Integrator> all{MOMENTA_INTEGRATORS(MOMENTA_LISTED)};
   return all;
 }
 
@@ -174,7 +57,7 @@ const Integrator& integrator(const std::string& name) {
                               reading::did_you_mean(name, known));
 }
 
-std::string integrator_names(Takes takes) {
+std::string integrator_names(Integrator::Takes takes) {
   std::vector<std::string> names;
   for (const Integrator& i : integrators())
     if (i.takes == takes) names.push_back(i.name);
@@ -184,11 +67,18 @@ std::string integrator_names(Takes takes) {
 std::string resetting_names() {
   std::vector<std::string> names;
   for (const Integrator& i : integrators())
-    if (i.takes == Takes::dae && i.resets) names.push_back(i.name);
+    if (i.takes == Integrator::Takes::dae && i.resets) names.push_back(i.name);
   return listed(names);
 }
 
 namespace {
+
+/// Null for an unknown name.
+const Integrator* find(const std::string& name) {
+  for (const Integrator& i : integrators())
+    if (i.name == name) return &i;
+  return nullptr;
+}
 
 /// Passes time for a system without unknowns: everything may be welded or driven.
 IntegrationResult pass_time(double t0, const std::vector<double>& output_times,
@@ -218,14 +108,9 @@ IntegrationResult integrate(const std::string& name, OdeSystem& system, double t
                             const std::vector<double>& y0, const std::vector<double>& output_times,
                             const IntegrationOptions& options, const Observer& observer) {
   if (system.size() == 0) return pass_time(t0, output_times, observer);
-  if (name == "adams" || name == "bdf")
-    return integrate_cvode(name, system, t0, y0, output_times, options, observer);
-  if (name == "gauss4" || name == "gauss6")
-    return integrate_gauss(name == "gauss4" ? 2 : 3, system, t0, y0, output_times, options,
-                           observer);
-  if (name == "rattle") return integrate_rattle(system, t0, y0, output_times, options, observer);
-  if (name == "energy-momentum")
-    return integrate_energy_momentum(system, t0, y0, output_times, options, observer);
+  const Integrator* method = find(name);
+  if (method && method->ode_run)
+    return method->ode_run(system, t0, y0, output_times, options, observer);
   return integrate_explicit(name, system, t0, y0, output_times, options, observer);
 }
 
@@ -233,17 +118,11 @@ IntegrationResult integrate(const std::string& name, DaeSystem& system, double t
                             const std::vector<double>& output_times,
                             const IntegrationOptions& options, const Observer& observer) {
   if (system.size() == 0) return pass_time(t0, output_times, observer);
-  if (name == "ida") return integrate_ida(system, t0, output_times, options, observer);
-  if (name == "bdf5") return integrate_bdf5(system, t0, output_times, options, observer);
-  if (name == "radau5") return integrate_radau5(system, t0, output_times, options, observer);
-  if (name == "generalised-alpha")
-    return integrate_generalised_alpha(system, t0, output_times, options, observer);
-  if (name == "bayo-ledesma")
-    return integrate_bayo_ledesma(system, t0, output_times, options, observer);
-  if (name == "hem5") return integrate_hem5(system, t0, output_times, options, observer);
-  if (name == "hem8") return integrate_hem8(system, t0, output_times, options, observer);
-  throw std::invalid_argument("no method \"" + name +
-                              "\" for DAEs: " + integrator_names(Takes::dae) + " are known");
+  const Integrator* method = find(name);
+  if (method && method->dae_run)
+    return method->dae_run(system, t0, output_times, options, observer);
+  throw std::invalid_argument("no method \"" + name + "\" for DAEs: " +
+                              integrator_names(Integrator::Takes::dae) + " are known");
 }
 
 }  // namespace momenta

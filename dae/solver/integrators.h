@@ -1,6 +1,7 @@
 #pragma once
-// The integrators by name: the systems each takes, its kind of steps, and the function that calls
-// it. Options, messages, studies and `momenta --help` take them from here.
+// The integrators by name: the systems each takes, its kind of steps, and its function, as its own
+// file has them; integrators.cpp lists all. Options, messages, studies and `momenta --help` take
+// them from here.
 
 #include <momenta/dae/solver/integration.h>
 
@@ -23,14 +24,23 @@ struct Integrator {
     fixed      ///< IntegrationOptions::step
   };
 
-  std::string name;    ///< as in options and tables
-  Takes takes;         ///< ODEs or DAEs
-  Step step;           ///< adaptive or fixed
-  bool multistep;      ///< keeps a history, which a gauge reset or flip would invalidate
-  bool projects;       ///< states may be corrected onto the constraints after each step
-  std::string method;  ///< description, one line
-  std::vector<std::string> forms;  ///< forms it takes; empty: all of its kind
-  bool resets = false;             ///< takes gauge reset (DAE methods)
+  /// A function that integrates ODEs.
+  using OdeRun = IntegrationResult (*)(OdeSystem&, double t0, const std::vector<double>& y0,
+                                       const std::vector<double>& output_times,
+                                       const IntegrationOptions&, const Observer&);
+  /// A function that integrates DAEs.
+  using DaeRun = IntegrationResult (*)(DaeSystem&, double t0,
+                                       const std::vector<double>& output_times,
+                                       const IntegrationOptions&, const Observer&);
+
+  std::string name;          ///< as in options and tables
+  Takes takes = Takes::ode;  ///< ODEs or DAEs
+  Step step = Step::fixed;   ///< adaptive or fixed
+  bool multistep = false;    ///< keeps a history, which a gauge reset or flip would invalidate
+  bool projects = false;     ///< states may be corrected onto the constraints after each step
+  std::string method = {};   ///< description, one line
+  std::vector<std::string> forms = {};  ///< forms it takes; empty: all of its kind
+  bool resets = false;                  ///< takes gauge reset (DAE methods)
   /// Gauges that DAE methods take by default.
   enum class Preferred {
     leak,
@@ -43,6 +53,8 @@ struct Integrator {
   /// Whether it steps on the parts of H(q, p): no σ is in its p, so that runs say gauge reset, and
   /// no accelerations are found, which friction by reaction takes.
   bool hamiltonian = false;
+  OdeRun ode_run = nullptr;  ///< for ODEs; null where it takes DAEs
+  DaeRun dae_run = nullptr;  ///< for DAEs; null where it takes ODEs
 
   /// `dae`: whether the form is a DAE.
   bool takes_form(const std::string& wanted, bool dae) const {

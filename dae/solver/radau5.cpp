@@ -15,6 +15,7 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/output_cursor.h>
 #include <momenta/dae/solver/radau5_error.h>
@@ -350,6 +351,15 @@ IntegrationResult integrate_radau5(DaeSystem& system, double t0,
   if (started && outputs.end() > t0) radau.initialise();
   return run_from_start(radau, started, system.failure(), system, t0, output_times, options,
                         observer);
+}
+
+Integrator radau5_integrator() {
+  return {.name = "radau5",
+          .takes = Integrator::Takes::dae,
+          .step = Integrator::Step::adaptive,
+          .method = "Radau IIA, order 5",
+          .resets = true,
+          .dae_run = integrate_radau5};
 }
 
 }  // namespace momenta

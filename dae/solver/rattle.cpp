@@ -21,6 +21,7 @@
 
 #include <momenta/dae/solver/constrained_steps.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/integrators.h>
 
 namespace momenta {
 namespace {
@@ -113,6 +114,15 @@ IntegrationResult integrate_rattle(OdeSystem& system, double t0, const std::vect
                                    const std::vector<double>& output_times,
                                    const IntegrationOptions& options, const Observer& observer) {
   return constrained::integrate<Rattle>(system, t0, y0, output_times, options, observer);
+}
+
+Integrator rattle_integrator() {
+  return {.name = "rattle",
+          .method = "RATTLE, order 2",
+          .forms = {"momentum"},
+          .closes = {"momentum"},
+          .hamiltonian = true,
+          .ode_run = integrate_rattle};
 }
 
 }  // namespace momenta
