@@ -56,7 +56,7 @@ class Search {
           if (result_.stopped) return std::nullopt;
           return search(from);
         },
-        is_better);
+        [](const FitStart& a, const FitStart& b) { return is_better(a, b, &FitStart::cost); });
     finish();
     return std::move(result_);
   }
@@ -89,11 +89,6 @@ class Search {
     return end.began;
   }
 
-  static bool is_better(const FitStart& a, const FitStart& b) {
-    const bool a_keeps = a.violation <= kept_within, b_keeps = b.violation <= kept_within;
-    if (a_keeps != b_keeps) return a_keeps;
-    return a_keeps ? a.cost < b.cost : a.violation < b.violation;
-  }
   double best_cost() const {
     return has_best(result_) ? result_.starts[result_.best].cost : INFINITY;
   }
@@ -101,11 +96,7 @@ class Search {
   void look_at_conditions_before() {
     if (conditions_.size() == 0) return;
     MotionValues values;
-    std::vector<double> room(conditions_.size(), WantedErrors::none);
-    if (parts_.at(family_.own(), false, values)) room = conditions_.room(values);
-    for (std::size_t i = 0; i < room.size(); ++i)
-      result_.keep.push_back({conditions_.condition(i).text, conditions_.condition(i).equal,
-                              room[i], WantedErrors::none, 0});
+    result_.keep = conditions_.before(parts_.at(family_.own(), false, values) ? &values : nullptr);
   }
 
   /// Largest violation of a condition; infinite without a motion.
@@ -129,12 +120,8 @@ class Search {
       return start;
     }
     VectorXd least, most;
-    bounds_of(request_.parameters, least, most);
     const Eigen::Index n = from.size(), free = x.size() - n;
-    least.conservativeResize(x.size());
-    most.conservativeResize(x.size());
-    least.tail(free).setConstant(-INFINITY);
-    most.tail(free).setConstant(INFINITY);
+    bounds_of(request_.parameters, free, least, most);
     const VectorXd first = x;
     VectorXd sizes = VectorXd::Ones(x.size());  // 1 rad for angles
     sizes.head(n) = sizes_;
@@ -157,12 +144,9 @@ class Search {
     start.to = x.head(n);
     start.places = x.tail(free);
     if (!start.converged && start.why.empty())
-      start.why =
-          start.violation > kept_within ? "no parameters near it keep the conditions"
-          : start.iterations >= request_.most_iterations
-              ? "it came to no end within " + std::to_string(start.iterations) + " iterations"
-          : refused_.empty() ? "steps became too short"
-                             : "steps became too short; the last that was taken back: " + refused_;
+      start.why = start.violation > kept_within
+                      ? no_parameters_near
+                      : why_no_minimum(request_, start.iterations, refused_);
     return start;
   }
 
@@ -235,13 +219,8 @@ class Search {
     result_.places = error_.free() ? std::vector<double>(best.places.begin(), best.places.end())
                                    : result_.wanted.swept;
     MotionValues values;
-    if (conditions_.size() > 0 && parts_.at(best.to, false, values)) {
-      const std::vector<double> room = conditions_.room(values);
-      for (std::size_t i = 0; i < room.size(); ++i) {
-        result_.keep[i].after = room[i];
-        if (i < best.multipliers.size()) result_.keep[i].multiplier = best.multipliers[i];
-      }
-    }
+    if (conditions_.size() > 0 && parts_.at(best.to, false, values))
+      conditions_.take_after(values, best.multipliers, result_.keep);
     const Eigen::Index n = best.to.size();
     result_.undetermined =
         undetermined_in_words(family_.names(), jacobian.leftCols(n) * sizes_.asDiagonal(),

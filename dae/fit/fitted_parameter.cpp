@@ -54,13 +54,14 @@ VectorXd sizes_of(const ParametricMechanism& family,
   return sizes;
 }
 
-void bounds_of(const std::vector<FittedParameter>& parameters, VectorXd& least, VectorXd& most) {
-  most = VectorXd::Constant(static_cast<Index>(parameters.size()), INFINITY);
+void bounds_of(const std::vector<FittedParameter>& parameters, Index more, VectorXd& least,
+               VectorXd& most) {
+  most = VectorXd::Constant(static_cast<Index>(parameters.size()) + more, INFINITY);
   least = -most;
-  for (Index j = 0; j < most.size(); ++j)
-    if (const auto& range = parameters[static_cast<std::size_t>(j)].range) {
-      least[j] = (*range)[0];
-      most[j] = (*range)[1];
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    if (const auto& range = parameters[j].range) {
+      least[static_cast<Index>(j)] = (*range)[0];
+      most[static_cast<Index>(j)] = (*range)[1];
     }
 }
 

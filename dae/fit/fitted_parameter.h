@@ -29,9 +29,9 @@ std::array<double, 2> range_from_text(const std::string& option, const std::stri
 Eigen::VectorXd sizes_of(const ParametricMechanism& family,
                          const std::vector<FittedParameter>& parameters);
 
-/// Ends of ranges, infinite without one.
-void bounds_of(const std::vector<FittedParameter>& parameters, Eigen::VectorXd& least,
-               Eigen::VectorXd& most);
+/// Ends of ranges, infinite without one and for `more` unknowns behind the parameters.
+void bounds_of(const std::vector<FittedParameter>& parameters, Eigen::Index more,
+               Eigen::VectorXd& least, Eigen::VectorXd& most);
 
 /// Checks that so many starts can be made. @throws std::invalid_argument, one sentence
 void expect_starts(const ParametricMechanism& family,

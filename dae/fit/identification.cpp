@@ -27,7 +27,7 @@ class IdentificationSearch {
     result_.seed = request.seed;
     result_.own = family.own();
     result_.measured = measured;
-    bounds_of(request.parameters, least_, most_);
+    bounds_of(request.parameters, 0, least_, most_);
   }
 
   Identification run() {
@@ -83,11 +83,7 @@ class IdentificationSearch {
                        end.r.norm() <= of_the_run() * std::sqrt(static_cast<double>(end.r.size())));
     if (!start.converged)
       start.why =
-          result_.stopped ? "it was stopped"
-          : start.iterations >= request_.most_iterations
-              ? "it came to no end within " + std::to_string(start.iterations) + " iterations"
-          : refused.empty() ? "steps became too short"
-                            : "steps became too short; the last that was taken back: " + refused;
+          result_.stopped ? "it was stopped" : why_no_minimum(request_, start.iterations, refused);
     return start;
   }
 

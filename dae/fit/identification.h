@@ -19,29 +19,15 @@
 
 namespace momenta {
 
-/// Parameters to vary, and settings.
-struct IdentificationRequest {
-  std::vector<FittedParameter> parameters;  ///< at least one
-  SceneText scene;                          ///< text of the family's scene
-  RunSettings settings;                     ///< runs end at the last measured time
-  int starts = 1;                           ///< the first is the scene's own
-  std::uint64_t seed = 1;                   ///< for further starts, which need ranges
-  int most_iterations = 500;                ///< per start
-  /// Journal of finished starts; null: none.
-  Journal* journal = nullptr;
-  /// Called before each run (start, least cost so far); false ends the search with the start as it
-  /// is.
-  std::function<bool(int, double)> progress;
+/// Runs to compare with what was measured, and settings.
+struct IdentificationRequest : SearchRequest {
+  SceneText scene;       ///< text of the family's scene
+  RunSettings settings;  ///< runs end at the last measured time
 };
 
 /// Result of an identification.
-struct Identification {
-  std::string scene;                        ///< name
-  std::vector<FittedParameter> parameters;  ///< θ, as asked
-  std::uint64_t seed = 1;                   ///< as asked
-  RunSettings settings;                     ///< settings of the runs
-  Eigen::VectorXd own;                      ///< θ of the scene
-  Eigen::VectorXd found;                    ///< the best θ
+struct Identification : SearchResult<FitStart> {
+  RunSettings settings;  ///< settings of the runs
   /// Standard deviations of `found`, in units of θ: NaN where a bound holds θ, r leaves it open, or
   /// N ≤ n.
   Eigen::VectorXd deviations;
@@ -50,11 +36,7 @@ struct Identification {
   Eigen::MatrixXd after;                    ///< y of the best
   double cost_before = WantedErrors::none;  ///< ½ |r|² of the given scene; NaN: no run
   double cost_after = WantedErrors::none;   ///< ½ |r|² of the best
-  std::string why_not_before;               ///< why there is no run; else empty
-  std::vector<FitStart> starts;             ///< starts in order
-  std::size_t best = 0;                     ///< index of the best start
   long runs = 0;                            ///< runs with derivatives
-  bool stopped = false;                     ///< stopped by `progress`
   std::string undetermined;                 ///< as in FitResult
   std::vector<std::string> remarks;         ///< sentences on jumps and kinks of runs
 

@@ -82,11 +82,19 @@ void KeptConditions::at(const MotionValues& values, const VectorXd& tau, VectorX
   }
 }
 
-std::vector<double> KeptConditions::room(const MotionValues& values) const {
-  std::vector<double> room;
+std::vector<KeptCondition> KeptConditions::before(const MotionValues* values) const {
+  std::vector<KeptCondition> all;
   for (const Condition& c : conditions_)
-    room.push_back(c.read.equal ? c.gap->value(values) : -c.gap->value(values));
-  return room;
+    all.push_back({c.read.text, c.read.equal, values ? c.room(*values) : NAN, NAN, 0});
+  return all;
+}
+
+void KeptConditions::take_after(const MotionValues& values, const std::vector<double>& multipliers,
+                                std::vector<KeptCondition>& kept) const {
+  for (std::size_t i = 0; i < conditions_.size(); ++i) {
+    kept[i].after = conditions_[i].room(values);
+    if (i < multipliers.size()) kept[i].multiplier = multipliers[i];
+  }
 }
 
 double KeptConditions::violation(const MotionValues& values) const {

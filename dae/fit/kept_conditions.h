@@ -16,7 +16,7 @@ struct KeptCondition {
   bool equal = false;  ///< an equation
   double before = 0;   ///< room in the given scene, < 0: broken; equation: difference of its sides;
                        ///< NaN: no motion
-  double after = 0;    ///< the same for the best
+  double after = 0;    ///< the same for the best; NaN: no motion
   double multiplier = 0;  ///< decrease of the best per unit of room [1/unit]
 };
 
@@ -37,8 +37,11 @@ class KeptConditions {
   /// Rows of c, then of e, and their derivatives by (θ, τ) unless null.
   void at(const MotionValues& values, const Eigen::VectorXd& tau, Eigen::VectorXd& rows,
           Eigen::MatrixXd* by) const;
-  /// Room of each condition, as in KeptCondition.
-  std::vector<double> room(const MotionValues& values) const;
+  /// Conditions with their room in the given scene; `values` null: without a motion.
+  std::vector<KeptCondition> before(const MotionValues* values) const;
+  /// Sets room and multipliers of the best.
+  void take_after(const MotionValues& values, const std::vector<double>& multipliers,
+                  std::vector<KeptCondition>& kept) const;
   /// Largest violation; 0: all kept.
   double violation(const MotionValues& values) const;
   /// Multiplier of each condition, of all its poses together.
@@ -54,6 +57,10 @@ class KeptConditions {
     int extreme = -1;         ///< part with a row per pose; −1: one row, then bounds
     BoundedFunction bounded;  ///< for several extremes
     Eigen::Index rows = 1, first = 0, unknown = 0;
+    /// As in KeptCondition.
+    double room(const MotionValues& values) const {
+      return read.equal ? gap->value(values) : -gap->value(values);
+    }
   };
   std::vector<Condition> conditions_;
   int inequalities_ = 0, equalities_ = 0;

@@ -35,7 +35,10 @@ class LeastSearch {
     look_before();
     take_starts(
         family_, request_, result_,
-        [this](int k, const VectorXd& from) { return std::optional(search(k, from)); }, is_better);
+        [this](int k, const VectorXd& from) { return std::optional(search(k, from)); },
+        [](const LeastStart& a, const LeastStart& b) {
+          return is_better(a, b, &LeastStart::value);
+        });
     finish();
     return std::move(result_);
   }
@@ -50,12 +53,6 @@ class LeastSearch {
     auto run = std::make_unique<RunParts>(family_, sizes_, request_.scene, request_.settings);
     run_ = run.get();
     return run;
-  }
-
-  static bool is_better(const LeastStart& a, const LeastStart& b) {
-    const bool a_keeps = a.violation <= kept_within, b_keeps = b.violation <= kept_within;
-    if (a_keeps != b_keeps) return a_keeps;
-    return a_keeps ? a.value < b.value : a.violation < b.violation;
   }
 
   bool motion(const VectorXd& theta, bool derivatives, MotionValues& values) {
@@ -73,15 +70,7 @@ class LeastSearch {
       result_.before = functional_.value(values);
     else
       result_.why_not_before = refused_;
-    const std::vector<double> room =
-        there_is ? conditions_.room(values)
-                 : std::vector<double>(conditions_.size(), WantedErrors::none);
-    for (std::size_t i = 0; i < conditions_.size(); ++i) {
-      KeptCondition& c = result_.keep.emplace_back();
-      c.text = conditions_.condition(i).text;
-      c.equal = conditions_.condition(i).equal;
-      c.before = room[i];
-    }
+    result_.keep = conditions_.before(there_is ? &values : nullptr);
     if (!swept_) return;
     result_.swept = swept_->swept();
     result_.places = swept_->places();
@@ -155,11 +144,7 @@ class LeastSearch {
     const Index n = from.size(), of_j = bounded_.unknowns(), of_c = conditions_.unknowns(),
                 more = of_j + of_c;
     VectorXd least, most, x(n + more), sizes(n + more);
-    bounds_of(request_.parameters, least, most);
-    least.conservativeResize(n + more);
-    most.conservativeResize(n + more);
-    least.tail(more).setConstant(-INFINITY);
-    most.tail(more).setConstant(INFINITY);
+    bounds_of(request_.parameters, more, least, most);
     x.head(n) = from;
     sizes.head(n) = sizes_;
     bounded_.start(first, x.segment(n, of_j), sizes.segment(n, of_j));
@@ -187,12 +172,9 @@ class LeastSearch {
     start.converged = end.kept && end.slope <= converged_slope;
     if (!start.converged)
       start.why = end.stopped ? "it was stopped"
-                  : end.iterations >= request_.most_iterations
-                      ? "it came to no end within " + std::to_string(end.iterations) + " iterations"
-                  : !end.kept ? "no parameters near it keep the conditions"
-                  : refused_.empty()
-                      ? "steps became too short"
-                      : "steps became too short; the last that was taken back: " + refused_;
+                  : end.kept || end.iterations >= request_.most_iterations
+                      ? why_no_minimum(request_, end.iterations, refused_)
+                      : no_parameters_near;
     return start;
   }
 
@@ -203,11 +185,7 @@ class LeastSearch {
     if (!motion(result_.found, true, values)) throw SceneError(refused_);
     result_.after =
         functional_.at(values, functional_.rows(values), VectorXd(), &result_.gradient, nullptr);
-    const std::vector<double> room = conditions_.room(values);
-    for (std::size_t i = 0; i < conditions_.size(); ++i) {
-      result_.keep[i].after = room[i];
-      result_.keep[i].multiplier = i < best.multipliers.size() ? best.multipliers[i] : 0;
-    }
+    conditions_.take_after(values, best.multipliers, result_.keep);
     for (std::size_t k = 0; k < result_.curves.size(); ++k)
       result_.curves[k].after = swept_->curve(curves_[k]);
     if (run_) result_.remarks = run_->remarks();

@@ -31,8 +31,7 @@ void read_all(const Json& json, Eigen::VectorXd& to) {
 }
 
 /// Fields of both kinds of start.
-template <class Start>
-Json common(const Start& s) {
+Json common(const SearchStart& s) {
   return {{"from", json_of_all(s.from)},
           {"to", json_of_all(s.to)},
           {"violation", json_of(s.violation)},
@@ -42,8 +41,7 @@ Json common(const Start& s) {
           {"converged", s.converged},
           {"why", s.why}};
 }
-template <class Start>
-void read_common(const Json& json, Start& s) {
+void read_common(const Json& json, SearchStart& s) {
   read_all(json.at("from"), s.from);
   read_all(json.at("to"), s.to);
   s.violation = number_of(json.at("violation"));
@@ -56,6 +54,14 @@ void read_common(const Json& json, Start& s) {
 }
 
 }  // namespace
+
+std::string why_no_minimum(const SearchRequest& request, int iterations,
+                           const std::string& refused) {
+  if (iterations >= request.most_iterations)
+    return "it came to no end within " + std::to_string(iterations) + " iterations";
+  const std::string short_steps = "steps became too short";
+  return refused.empty() ? short_steps : short_steps + "; the last that was taken back: " + refused;
+}
 
 Json record_of_start(const FitStart& s) {
   Json json = common(s);

@@ -35,6 +35,20 @@ bool has_best(const Result& result) {
   return !result.starts.empty() && result.starts[result.best].to.size() > 0;
 }
 
+/// Whether `a` is better than `b`: keeps the conditions where `b` does not; of two that do, has
+/// less of `value`; of two that don't, is nearer to them.
+template <class Start>
+bool is_better(const Start& a, const Start& b, double Start::*value) {
+  const bool a_keeps = a.violation <= kept_within, b_keeps = b.violation <= kept_within;
+  if (a_keeps != b_keeps) return a_keeps;
+  return a_keeps ? a.*value < b.*value : a.violation < b.violation;
+}
+
+inline constexpr const char* no_parameters_near = "no parameters near it keep the conditions";
+/// Why a search came to no minimum; `refused`: why a step was last taken back, or empty.
+std::string why_no_minimum(const SearchRequest& request, int iterations,
+                           const std::string& refused);
+
 /// Recalls starts from the journal, makes others by `search(number, from)`, which returns none to
 /// stop. The best, by `is_better(a, b)`, is left in result.best.
 /// @throws SceneError where no start is possible

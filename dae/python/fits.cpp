@@ -38,8 +38,14 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
                                    {.algebra = b.mechanism->options().algebra});
   const SweptWay way{sweep, over, poses, rate};
   Progress progress(told);
-  const auto going = [&](int start, double) {
-    return progress(static_cast<double>(start) / starts, "fit");
+  const auto ask = [&](SearchRequest& request) {
+    request.parameters = parameters;
+    request.starts = starts;
+    request.seed = seed;
+    request.most_iterations = iterations;
+    request.progress = [&](int start, double) {
+      return progress(static_cast<double>(start) / starts, "fit");
+    };
   };
   std::string json, found;
   SceneText scene{text, file, b.set, b.mechanism->options()};
@@ -51,16 +57,12 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
   };
   if (!least.empty()) {
     LeastRequest request;
-    request.parameters = parameters;
+    ask(request);
     request.least = least;
     request.keep = keep;
     if (!sweep.empty()) request.way = way;
     request.scene = scene;
     request.settings = settings();
-    request.starts = starts;
-    request.seed = seed;
-    request.most_iterations = iterations;
-    request.progress = going;
     progress.during([&] {
       const LeastResult result = momenta::least(family, request);
       json = least_json(result).dump();
@@ -70,13 +72,9 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
     if (!keep.empty())
       throw py::value_error("fit: `keep` does not go with a measured motion, expected one of them");
     IdentificationRequest request;
-    request.parameters = parameters;
+    ask(request);
     request.scene = scene;
     request.settings = settings();
-    request.starts = starts;
-    request.seed = seed;
-    request.most_iterations = iterations;
-    request.progress = going;
     const MeasuredMotion measured = read_measured(to, Mechanism(scene.scene(), scene.options));
     progress.during([&] {
       const Identification result = identify(family, measured, request);
@@ -85,14 +83,10 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
     });
   } else {
     FitRequest request;
-    request.parameters = parameters;
+    ask(request);
     request.sweep = sweep;
     request.way = way;
     request.keep = keep;
-    request.starts = starts;
-    request.seed = seed;
-    request.most_iterations = iterations;
-    request.progress = going;
     const WantedPoses wanted = read_wanted(to, *family.at(family.own()), sweep);
     progress.during([&] {
       const FitResult result = momenta::fit(family, wanted, request);
