@@ -232,8 +232,7 @@ class Bdf5 {
 IntegrationResult integrate_bdf5(DaeSystem& system, double t0,
                                  const std::vector<double>& output_times,
                                  const IntegrationOptions& options, const Observer& observer) {
-  if (!(options.rtol > 0) || !(options.atol > 0))
-    throw std::invalid_argument("rtol and atol of bdf5 must be positive");
+  expect_tolerances(options, "bdf5");
   const OutputCursor outputs(t0, output_times);
   Bdf5 method(system, options, outputs.end() - t0);
   const bool started = method.start(t0);

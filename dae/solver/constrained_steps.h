@@ -216,8 +216,7 @@ IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<doub
     throw std::invalid_argument(name + " takes a Hamiltonian: expected form momentum");
   if (y0.size() != static_cast<std::size_t>(system.size()))
     throw std::invalid_argument("the start state must have the size of the system");
-  if (!(options.step > 0) || !std::isfinite(options.step))
-    throw std::invalid_argument(name + " has fixed steps and needs a step > 0");
+  expect_fixed_step(options, name);
   const OutputCursor outputs(t0, output_times);
   Steps<Step> method(*parts, t0, y0, options.step);
   IntegrationResult result;

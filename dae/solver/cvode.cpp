@@ -222,8 +222,7 @@ IntegrationResult integrate_cvode(const std::string& method, OdeSystem& system, 
     throw std::invalid_argument("no method \"" + method + "\" of CVODE: adams, bdf are known");
   if (y0.size() != static_cast<std::size_t>(system.size()))
     throw std::invalid_argument("the start state must have the size of the system");
-  if (!(options.rtol > 0) || !(options.atol > 0))
-    throw std::invalid_argument("rtol and atol of " + method + " must be positive");
+  expect_tolerances(options, method);
   const OutputCursor outputs(t0, output_times);
   const bool stiff = method == "bdf";
   Cvode cvode(stiff, system, t0, y0, outputs.end(), options);

@@ -262,9 +262,7 @@ IntegrationResult integrate_half_explicit(DaeSystem& system, double t0,
         " takes equations of index 2: expected form acceleration-index2 or momentum-index2");
   if (!(options.step >= 0) || !std::isfinite(options.step))
     throw std::invalid_argument("a fixed step must be positive");
-  if (!(options.rtol > 0) || !(options.atol > 0))
-    throw std::invalid_argument(std::string("rtol and atol of ") + Stages::name +
-                                " must be positive");
+  expect_tolerances(options, Stages::name);
   const OutputCursor outputs(t0, output_times);
   HalfExplicitRun<Stages> method(system, *parts, t0, outputs.end() - t0, options);
   const bool started = method.start();

@@ -112,6 +112,7 @@ class Ida {
 
   void initialise() {
     void* ida = memory_.get();
+    initialised_ = true;
     check(IDASetErrHandlerFn(ida, sundials::silent, nullptr), "IDASetErrHandlerFn");
     check(IDAInit(ida, residual, t0_, y_, ydot_), "IDAInit");
     check(IDASetUserData(ida, this), "IDASetUserData");
@@ -190,6 +191,7 @@ class Ida {
 
   Counters counters() {
     Counters c = earlier_attempts_;
+    if (!initialised_) return c;
     add_counters(c);
     c.evaluations += floor_.evaluations();
     return c;
@@ -345,6 +347,7 @@ class Ida {
   long failures_ = 0;         ///< failed error tests
   int stuck_ = 0, held_ = 0;  ///< steps at order 1 after a rejection each; of one length, to come
   bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step
+  bool initialised_ = false;
 };
 
 thread_local Ida* Ida::testing = nullptr;
@@ -354,25 +357,13 @@ thread_local Ida* Ida::testing = nullptr;
 IntegrationResult integrate_ida(DaeSystem& system, double t0,
                                 const std::vector<double>& output_times,
                                 const IntegrationOptions& options, const Observer& observer) {
-  if (!(options.rtol > 0) || !(options.atol > 0))
-    throw std::invalid_argument("rtol and atol of ida must be positive");
+  expect_tolerances(options, "ida");
   const OutputCursor outputs(t0, output_times);
   Ida ida(system, options, outputs.end() - t0);
-  IntegrationResult result;
-  result.jacobian = "dual numbers";
-  result.end_time = t0;
   const bool started = ida.start(t0);
-  result.linear_solver = ida.linear_solver();
-  if (!started) {
-    result.reason = stop_sentence("ida", t0, evaluation_cause(system.failure()));
-    result.y.assign(ida.y(), ida.y() + system.size());
-    return result;
-  }
-  const bool has_span = outputs.end() > t0;
-  if (has_span) ida.initialise();
-  run_with_ode_restarts(ida, system, t0, output_times, options, observer, result);
-  if (has_span) result.counters += ida.counters();
-  return result;
+  if (started && outputs.end() > t0) ida.initialise();
+  return run_from_start(ida, started, system.failure(), system, t0, output_times, options,
+                        observer);
 }
 
 Integrator ida_integrator() {

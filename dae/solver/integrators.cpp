@@ -1,6 +1,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/solver/integrators.h>
 
+#include <cmath>
 #include <stdexcept>
 
 // clang-format off
@@ -37,6 +38,16 @@ std::string listed(const std::vector<std::string>& names) {
     text += names[i];
   }
   return text;
+}
+
+void expect_tolerances(const IntegrationOptions& options, const std::string& method) {
+  if (!(options.rtol > 0) || !(options.atol > 0))
+    throw std::invalid_argument("rtol and atol of " + method + " must be positive");
+}
+
+void expect_fixed_step(const IntegrationOptions& options, const std::string& method) {
+  if (!(options.step > 0) || !std::isfinite(options.step))
+    throw std::invalid_argument(method + " has fixed steps and needs a step > 0");
 }
 
 const std::vector<Integrator>& integrators() {

@@ -1,6 +1,6 @@
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/newmark.h>
+#include <momenta/dae/solver/ode_restart.h>
 
 #include <algorithm>
 #include <cmath>
@@ -247,25 +247,13 @@ IntegrationResult integrate_newmark(const char* name, const NewmarkRule& rule, D
   if (order == nullptr)
     throw std::invalid_argument(
         method + " takes equations of second order: expected form acceleration-index3");
-  if (!(options.step > 0) || !std::isfinite(options.step))
-    throw std::invalid_argument(method + " has fixed steps and needs a step > 0");
-  if (!(options.rtol > 0) || !(options.atol > 0))
-    throw std::invalid_argument("rtol and atol of " + method + " must be positive");
+  expect_fixed_step(options, method);
+  expect_tolerances(options, method);
   const OutputCursor outputs(t0, output_times);
   Newmark run(name, rule, system, *order, t0, options);
-  IntegrationResult result;
-  result.jacobian = "dual numbers";
-  result.end_time = t0;
   const bool started = run.start();
-  result.linear_solver = run.linear_solver();
-  if (!started) {
-    result.reason = stop_sentence(name, t0, evaluation_cause(system.failure()));
-    result.y.assign(run.y(), run.y() + system.size());
-    return result;
-  }
-  MultistepRun<Newmark>(run, system.size(), t0, output_times, options, observer).run(result);
-  result.counters = run.counters();
-  return result;
+  return run_from_start(run, started, system.failure(), system, t0, output_times, options,
+                        observer);
 }
 
 }  // namespace momenta

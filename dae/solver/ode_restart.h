@@ -163,21 +163,9 @@ class WithOdeRestarts {
   long steps_ = 0, evaluations_ = 0;
 };
 
-/// Steps a started method to the last output time, with ODE restarts; fills the result but for the
-/// method's own counters.
-template <class Method>
-void run_with_ode_restarts(Method& method, DaeSystem& system, double t0,
-                           const std::vector<double>& output_times,
-                           const IntegrationOptions& options, const Observer& observer,
-                           IntegrationResult& result) {
-  WithOdeRestarts<Method> run(method, system, options);
-  MultistepRun<WithOdeRestarts<Method>>(run, system.size(), t0, output_times, options, observer)
-      .run(result);
-  run.count(result.counters);
-}
-
-/// The same with counters, of a method whose start() said `started`; if it did not, the result says
-/// why, in the words of `failure`. An implicit method has linear_solver(), with the exact Jacobian.
+/// Steps a method whose start() said `started` to the last output time, with ODE restarts where it
+/// can restart(); if it did not start, the result says why, in the words of `failure`. An implicit
+/// method has linear_solver(), with the exact Jacobian.
 template <class Method>
 IntegrationResult run_from_start(Method& method, bool started, const std::string& failure,
                                  DaeSystem& system, double t0,
@@ -194,7 +182,14 @@ IntegrationResult run_from_start(Method& method, bool started, const std::string
     result.y.assign(method.y(), method.y() + system.size());
     return result;
   }
-  run_with_ode_restarts(method, system, t0, output_times, options, observer, result);
+  if constexpr (requires { method.restart(t0); }) {
+    WithOdeRestarts<Method> run(method, system, options);
+    MultistepRun<WithOdeRestarts<Method>>(run, system.size(), t0, output_times, options, observer)
+        .run(result);
+    run.count(result.counters);
+  } else {
+    MultistepRun<Method>(method, system.size(), t0, output_times, options, observer).run(result);
+  }
   result.counters += method.counters();
   return result;
 }

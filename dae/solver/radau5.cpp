@@ -343,8 +343,7 @@ class Radau5 {
 IntegrationResult integrate_radau5(DaeSystem& system, double t0,
                                    const std::vector<double>& output_times,
                                    const IntegrationOptions& options, const Observer& observer) {
-  if (!(options.rtol > 0) || !(options.atol > 0))
-    throw std::invalid_argument("rtol and atol of radau5 must be positive");
+  expect_tolerances(options, "radau5");
   const OutputCursor outputs(t0, output_times);
   Radau5 radau(system, options, outputs.end() - t0);
   const bool started = radau.start(t0);
