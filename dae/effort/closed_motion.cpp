@@ -241,7 +241,6 @@ void ClosedMotion::go_to(std::size_t number, VectorXd& q, VectorXd& u, VectorXd&
   const double largest = scaled_rates.size() > 0 ? scaled_rates.cwiseAbs().maxCoeff() : 0;
   if (rate_gap > 1e-3 * (largest + std::abs(v[worst])) && rate_gap > within_)
     refuse(t, v - scaled_rates, worst, rates_[static_cast<std::size_t>(worst)].unit);
-  rate_gap_ = std::max(rate_gap_, rate_gap);
   u = scaled_rates.cwiseProduct(unit);
   e.move(u.data());
   e.joint_forces(q_.data(), u.data(), none.data(), nullptr, force.data());

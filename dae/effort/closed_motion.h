@@ -32,7 +32,6 @@ class ClosedMotion {
 
   /// Largest deviations so far, in units of the scene.
   double largest_gap() const { return gap_; }
-  double largest_rate_gap() const { return rate_gap_; }  ///< [1/s]
 
   ScaledLoops& loops() { return loops_; }
   LoopIslands& islands() { return islands_; }
@@ -57,7 +56,7 @@ class ClosedMotion {
   std::vector<std::vector<int>> given_;     ///< places of given rates, by island
   Contradiction contradiction_;             ///< the start's
   Eigen::VectorXd q_;
-  double within_, gap_ = 0, rate_gap_ = 0, tolerance_;
+  double within_, gap_ = 0, tolerance_;
 };
 
 }  // namespace momenta
