@@ -1,4 +1,5 @@
 #include <momenta/core/expression/input_times.h>
+#include <momenta/core/expression/jumps.h>
 #include <momenta/core/expression/tape.h>
 
 #include <algorithm>
@@ -98,13 +99,11 @@ void InputTimes::add(const Expression& formula, int time,
   for (std::size_t i = 0; i < tape.size(); ++i) {
     if (takes[i] != Takes::time_alone || tape[i].operation == O::variable) continue;
     const O o = tape[i].operation;
-    const bool compares = o == O::less || o == O::less_equal,
-               turns = o == O::abs || o == O::min || o == O::max,
-               jumps = compares || o == O::sign || o == O::floor;
+    const bool jumps = formula::jumps(o);
     bool is_known = false;
-    if (jumps || turns) {
+    if (jumps || formula::has_corner(o)) {
       const int a = place[static_cast<std::size_t>(tape[i].a)];
-      const bool two = compares || o == O::min || o == O::max;
+      const bool two = formula::operands_of(o) == 2;
       const int argument =
           two ? inputs.add(O::subtract, a, place[static_cast<std::size_t>(tape[i].b)]) : a;
       is_known = add_linear(value_at(argument), jumps, o == O::floor);

@@ -1,4 +1,5 @@
 #include <momenta/core/expression/function_names.h>
+#include <momenta/core/expression/jumps.h>
 #include <momenta/core/expression/switches.h>
 
 #include <cmath>
@@ -9,19 +10,15 @@ using formula::Operation;
 
 Expression Switches::held(const Expression& formula) {
   const auto& tape = formula.tape();
-  const auto is_jump = [](Operation o) {
-    return o == Operation::less || o == Operation::less_equal || o == Operation::sign ||
-           o == Operation::floor;
-  };
   std::vector<bool> turns(tape.size());  // whether it is in the argument of a jump
   for (std::size_t k = tape.size(); k-- > 0;)
-    if (turns[k] || is_jump(tape[k].operation))
+    if (turns[k] || formula::jumps(tape[k].operation))
       if (tape[k].operation != Operation::variable)
         for (const int of : {tape[k].a, tape[k].b, tape[k].c})
           if (of >= 0) turns[static_cast<std::size_t>(of)] = true;
   std::vector<int> place;
   for (formula::Instruction in : tape) {
-    const bool held = is_jump(in.operation) || turns[place.size()];
+    const bool held = formula::jumps(in.operation) || turns[place.size()];
     for (int* of : {&in.a, &in.b, &in.c})
       if (in.operation != Operation::variable && *of >= 0)
         *of = place[static_cast<std::size_t>(*of)];

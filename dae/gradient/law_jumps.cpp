@@ -1,4 +1,5 @@
 #include <momenta/core/expression/formula_text.h>
+#include <momenta/core/expression/jumps.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/gradient/law_jumps.h>
@@ -50,8 +51,7 @@ bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Ex
       if (exponent.operation != O::number || !(exponent.number > 0)) jumps |= moves[i] != 0;
     }
     if (in.operation == O::atan2) jumps |= moves[i] != 0;
-    if (rates && (in.operation == O::abs || in.operation == O::min || in.operation == O::max ||
-                  in.operation == O::spline))
+    if (rates && (formula::has_corner(in.operation) || in.operation == O::spline))
       jumps |= moves[i] != 0;
   }
   return jumps;
