@@ -30,7 +30,7 @@ class ClosedMotion {
   /// Cost: O(bodies), and a dense QR of each island for each of Newton's steps.
   void go_to(std::size_t row, Eigen::VectorXd& q, Eigen::VectorXd& u, Eigen::VectorXd& udot);
 
-  /// Largest deviations so far, in units of the scene.
+  /// Largest deviation so far, in units of the scene.
   double largest_gap() const { return gap_; }
 
   ScaledLoops& loops() { return loops_; }

@@ -37,11 +37,6 @@ struct IntegrationOptions {
   }
 };
 
-/// @throws std::invalid_argument for tolerances of `method` that are not positive.
-void expect_tolerances(const IntegrationOptions& options, const std::string& method);
-/// @throws std::invalid_argument where `method`, which has no other, has no step > 0.
-void expect_fixed_step(const IntegrationOptions& options, const std::string& method);
-
 /// The work of an integration.
 struct Counters {
   long steps = 0;              ///< accepted

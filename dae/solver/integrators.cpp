@@ -1,5 +1,6 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/solver/stopping.h>
 
 #include <cmath>
 #include <stdexcept>

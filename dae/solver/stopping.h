@@ -11,6 +11,13 @@
 
 namespace momenta {
 
+struct IntegrationOptions;  // integration.h
+
+/// @throws std::invalid_argument for tolerances of `method` that are not positive.
+void expect_tolerances(const IntegrationOptions& options, const std::string& method);
+/// @throws std::invalid_argument where `method`, which has no other, has no step > 0.
+void expect_fixed_step(const IntegrationOptions& options, const std::string& method);
+
 /// Short decimal form for sentences; results are never printed with it.
 inline std::string in_words(double x) {
   char text[32];
