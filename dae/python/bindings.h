@@ -21,6 +21,8 @@ namespace momenta::python {
 namespace py = pybind11;
 using Vector = Eigen::VectorXd;
 using In = Eigen::Ref<const Eigen::VectorXd>;
+/// A table as NumPy has it.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Refuses an array of wrong length or with numbers that are not finite, by its name.
 inline void expect_size(const In& x, int size, const char* name, const char* what) {
@@ -34,6 +36,13 @@ inline void expect_time(double t) {
   if (!std::isfinite(t))
     throw py::value_error("t is " + std::string(py::str(py::float_(t))) +
                           ", expected a time in seconds");
+}
+
+/// Names with units.
+inline std::vector<std::string> labels_of(const std::vector<Column>& columns) {
+  std::vector<std::string> all;
+  for (const Column& c : columns) all.push_back(c.label());
+  return all;
 }
 
 /// Kernel, solver of (7) and cuts of runs, by name. @throws py::value_error

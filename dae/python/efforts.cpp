@@ -11,8 +11,6 @@ namespace momenta::python {
 
 namespace {
 
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 /// A table of arrays, named by column with or without unit.
 Reference table_of(const Mechanism& mechanism, const py::dict& motion) {
   std::vector<Column> known = mechanism.coordinate_columns();

@@ -44,12 +44,6 @@ std::string toml_of(const Bench& bench) {
 
 namespace {
 
-std::vector<std::string> labels(const std::vector<Column>& columns) {
-  std::vector<std::string> all;
-  for (const Column& c : columns) all.push_back(c.label());
-  return all;
-}
-
 /// (u, σ, ṗ) of (7)-(8).
 py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
                          const std::optional<Vector>& centre, double leak,
@@ -236,11 +230,11 @@ void bind_mechanism(py::module_& module) {
                              "number of rates, and of momenta")
       .def_property_readonly("m", of([](const Mechanism& m) { return m.m(); }),
                              "number of loop equations")
-      .def_property_readonly("coordinates",
-                             of([](const Mechanism& m) { return labels(m.coordinate_columns()); }),
-                             "names of q with units")
+      .def_property_readonly(
+          "coordinates", of([](const Mechanism& m) { return labels_of(m.coordinate_columns()); }),
+          "names of q with units")
       .def_property_readonly("rates",
-                             of([](const Mechanism& m) { return labels(m.rate_columns()); }),
+                             of([](const Mechanism& m) { return labels_of(m.rate_columns()); }),
                              "names of u with units")
       .def_property_readonly("equations", of([](const Mechanism& m) {
                                std::vector<std::string> names;

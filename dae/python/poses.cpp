@@ -15,8 +15,6 @@ namespace momenta::python {
 
 namespace {
 
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
               std::optional<double> to, double by, const std::vector<std::string>& hold,
               const std::string& output) {

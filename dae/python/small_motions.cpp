@@ -61,16 +61,8 @@ py::dict modes(const Bench& b, const std::string& equilibrium, const std::string
   all["frequency"] = std::move(frequency);
   all["damping_ratio"] = std::move(damping_ratio);
   all["shapes"] = std::move(shapes);
-  std::vector<std::string> names;
-  for (const Column& c : result.shapes) names.push_back(c.label());
-  all["shape_names"] = names;
+  all["shape_names"] = labels_of(result.shapes);
   return all;
-}
-
-std::vector<std::string> labels_of(const std::vector<Column>& columns) {
-  std::vector<std::string> names;
-  for (const Column& c : columns) names.push_back(c.label());
-  return names;
 }
 
 py::dict linearise(const Bench& b, const std::string& kind, double t,
