@@ -1,16 +1,43 @@
-// Tables of a scene, in the order of its members.
+// Tables of a scene, in the order of its members, and [run].
 
 #include <momenta/core/lagrangian/lagrangian_formulas.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/toml/parameters.h>
 #include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/scene/toml/scene_keys.h>
 #include <momenta/core/scene/toml/set_numbers.h>
 #include <momenta/core/scene/validate.h>
 
 #include <new>
 
 namespace momenta {
+
+void reading::declare(Keys& t, RunDefaults& run) {
+  const RunDefaults usual;
+  t.number("end", run.end_time, {"s", Bound::positive}, usual.end_time);
+  t.optional("step", run.step, {"s", Bound::positive});
+  t.optional("leak", run.leak, {"1/s", Bound::positive});
+  t.whole("samples", run.samples, 1, usual.samples);
+  t.value_or("project", run.project, false);
+}
+
+namespace {
+
+/// Reads the tables of [[key]]. `others`: what their declaration takes beside them.
+template <class Spec, class... Others>
+void read_all(const reading::Fields& scene, std::string_view key, std::vector<Spec>& specs,
+              const Others&... others) {
+  for (const reading::Fields& table : scene.tables(key, key)) {
+    Spec& spec = specs.emplace_back();
+    spec.at = table.at();
+    if constexpr (requires { reading::read_kind_of(table, spec); })
+      reading::read_kind_of(table, spec);
+    reading::Keys::read(table,
+                        [&](reading::Keys& keys) { reading::declare(keys, spec, others...); });
+  }
+}
+
+}  // namespace
 
 Scene parse_scene(std::string_view text, const std::string& file) {
   return parse_scene(text, file, {});
@@ -30,32 +57,27 @@ Scene parse_scene(std::string_view text, const std::string& file,
   scene.file = file;
   scene.name = table.text("name", "");
   scene.gravity = table.vector("gravity", {"m/s²"}, scene.gravity);
-  for (const reading::Fields& t : table.tables("body", "body"))
-    scene.bodies.push_back(reading::read_body(t));
-  for (const reading::Fields& t : table.tables("joint", "joint"))
-    scene.joints.push_back(reading::read_joint(t));
-  for (const reading::Fields& t : table.tables("drive", "drive"))
-    scene.drives.push_back(reading::read_drive(t));
-  for (const reading::Fields& t : table.tables("loop", "loop"))
-    scene.loops.push_back(reading::read_loop(t, scene.drives));
-  for (const reading::Fields& t : table.tables("force", "force"))
-    scene.forces.push_back(reading::read_force(t));
-  for (const reading::Fields& t : table.tables("function", "function"))
-    scene.functions.push_back(reading::read_function(t));
-  for (const reading::Fields& t : table.tables("marker", "marker"))
-    scene.markers.push_back(reading::read_marker(t));
-  for (const reading::Fields& t : table.tables("event", "event"))
-    scene.events.push_back(reading::read_event(t));
-  for (const reading::Fields& t : table.tables("visual", "visual"))
-    scene.visuals.push_back(reading::read_visual(t));
+  read_all(table, "body", scene.bodies);
+  read_all(table, "joint", scene.joints);
+  read_all(table, "drive", scene.drives);
+  read_all(table, "loop", scene.loops, std::span<const DriveSpec>(scene.drives));
+  read_all(table, "force", scene.forces);
+  read_all(table, "function", scene.functions);
+  read_all(table, "marker", scene.markers);
+  read_all(table, "event", scene.events);
+  read_all(table, "visual", scene.visuals);
   if (const auto assembly = table.table("assembly")) {
     assembly->allow({"hold"});
     scene.held = assembly->texts("hold");
     if (const reading::Value* hold = assembly->find("hold")) scene.held_at = hold->at;
   }
-  if (const auto lagrangian = table.table("lagrangian"))
-    scene.lagrangian = reading::read_lagrangian(*lagrangian);
-  if (const auto run = table.table("run")) scene.run = reading::read_run(*run);
+  if (const auto lagrangian = table.table("lagrangian")) {
+    LagrangianSpec& spec = scene.lagrangian.emplace();
+    spec.at = lagrangian->at();
+    reading::Keys::read(*lagrangian, [&](reading::Keys& keys) { declare(keys, spec); });
+  }
+  if (const auto run = table.table("run"))
+    reading::Keys::read(*run, [&](reading::Keys& keys) { declare(keys, scene.run); });
 
   for (std::size_t i = 0; i < parameters.names().size(); ++i)
     scene.parameters.push_back({parameters.names()[i], parameters[i], parameters.used(i)});

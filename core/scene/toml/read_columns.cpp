@@ -2,7 +2,7 @@
 // between. Empty lines and lines that begin with # are skipped.
 
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/scene/toml/scene_keys.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>

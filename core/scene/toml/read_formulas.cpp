@@ -1,9 +1,9 @@
-// Functions, and formulas of forces, loops, drives and events, read once the whole scene is known.
+// Formulas of forces, loops, drives and events, read once the whole scene is known.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/scene/toml/scene_keys.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
@@ -51,23 +51,6 @@ bool takes_time(const Formula& formula) {
 }
 
 }  // namespace
-
-FunctionSpec read_function(const Fields& table) {
-  table.allow({"name", "kind", "file", "x", "y"});
-  FunctionSpec function;
-  function.at = table.at();
-  function.name = table.text("name");
-  if (table.has("kind")) function.kind = function_kinds[read_kind(table, function_kinds)];
-  if (table.has("file")) {
-    read_columns(table, function);
-    return function;
-  }
-  function.x = table.numbers("x", {});
-  function.y = table.numbers("y", {});
-  if (const std::string fault = spline_fault(function.x, function.y, "x", "y"); !fault.empty())
-    table.fail_at(table.at(), fault);
-  return function;
-}
 
 void read_formulas(const Fields& root, Scene& scene) {
   const FormulaReader reader(scene);
