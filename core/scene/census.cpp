@@ -82,41 +82,35 @@ Census::Census(const Scene& scene) : scene_(scene) {
     if (!event.name.empty()) events.add("event", event.name, event.at);
 }
 
-void Census::require_body(const std::string& name, bool or_ground, Location at,
-                          const std::string& who, const std::string& key) const {
+void Census::require_body(const std::string& name, bool or_ground, const Subject& who,
+                          const std::string& key) const {
   const std::string expected = or_ground ? ", expected a body or \"ground\"" : ", expected a body";
   if (name == "ground") {
     if (or_ground) return;
-    throw SceneError(scene_.where(at) + who + ": " + key + " is \"ground\"" + expected);
+    who.fail(key + " is \"ground\"" + expected);
   }
   if (bodies_.contains(name)) return;
-  throw SceneError(scene_.where(at) + who + ": " + key + " is " + in_quotes(name) +
-                   ", which is no body" + expected + near_key(name, bodies_));
+  who.fail(key + " is " + in_quotes(name) + ", which is no body" + expected +
+           near_key(name, bodies_));
 }
 
-const JointSpec& Census::require_joint(const std::string& name, Location at,
-                                       const std::string& who) const {
+const JointSpec& Census::require_joint(const std::string& name, const Subject& who) const {
   if (const auto found = joints_.find(name); found != joints_.end()) return *found->second;
-  throw SceneError(scene_.where(at) + who + ": " + in_quotes(name) +
-                   (loops_.contains(name) ? " is a loop" : " is no joint") +
-                   ", expected the name of a [[joint]]" + near_key(name, joints_));
+  who.fail(in_quotes(name) + (loops_.contains(name) ? " is a loop" : " is no joint") +
+           ", expected the name of a [[joint]]" + near_key(name, joints_));
 }
 
-const LoopSpec& Census::require_loop(const std::string& name, Location at,
-                                     const std::string& who) const {
+const LoopSpec& Census::require_loop(const std::string& name, const Subject& who) const {
   if (const auto found = loops_.find(name); found != loops_.end()) return *found->second;
-  throw SceneError(scene_.where(at) + who + ": " + in_quotes(name) +
-                   (joints_.contains(name) ? " is a joint" : " is no loop") +
-                   ", expected the name of a [[loop]]" + near_key(name, loops_));
+  who.fail(in_quotes(name) + (joints_.contains(name) ? " is a joint" : " is no loop") +
+           ", expected the name of a [[loop]]" + near_key(name, loops_));
 }
 
-void Census::require_one_coordinate(const std::string& name, Location at,
-                                    const std::string& who) const {
-  const JointKind kind = require_joint(name, at, who).kind;
+void Census::require_one_coordinate(const std::string& name, const Subject& who) const {
+  const JointKind kind = require_joint(name, who).kind;
   if (!has_one_coordinate(kind))
-    throw SceneError(scene_.where(at) + who + ": joint " + in_quotes(name) + " is " +
-                     std::string(name_of(kind)) +
-                     ", expected a revolute, prismatic or helical joint");
+    who.fail("joint " + in_quotes(name) + " is " + std::string(name_of(kind)) +
+             ", expected a revolute, prismatic or helical joint");
 }
 
 }  // namespace momenta::reading

@@ -11,11 +11,20 @@
 
 namespace momenta::reading {
 
-/// Throws SceneError "<place><who>: <sentence>" unless `condition` holds.
-inline void require(bool condition, const Scene& scene, Location at, const std::string& who,
-                    const char* sentence) {
-  if (!condition) throw SceneError(scene.where(at) + who + ": " + sentence);
-}
+/// What a check is about: its place in the scene, and the words that open its sentences.
+struct Subject {
+  const Scene& scene;
+  Location at;
+  std::string who;
+
+  /// Throws SceneError "<place><who>: <sentence>" unless `condition` holds.
+  void require(bool condition, std::string_view sentence) const {
+    if (!condition) fail(std::string(sentence));
+  }
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw SceneError(scene.where(at) + who + ": " + sentence);
+  }
+};
 
 /// All names of a scene. Construction checks them: none empty, none twice among bodies, joints with
 /// loops, markers, functions, named forces, named events; no control characters; no body "ground".
@@ -24,18 +33,17 @@ class Census {
   explicit Census(const Scene& scene);
 
   /// Requires a body, or "ground" where allowed; else SceneError "<place><who>: <key> is ...".
-  void require_body(const std::string& name, bool or_ground, Location at, const std::string& who,
+  void require_body(const std::string& name, bool or_ground, const Subject& who,
                     const std::string& key) const;
 
   /// Requires a joint of the tree.
-  const JointSpec& require_joint(const std::string& name, Location at,
-                                 const std::string& who) const;
+  const JointSpec& require_joint(const std::string& name, const Subject& who) const;
 
   /// Requires a loop.
-  const LoopSpec& require_loop(const std::string& name, Location at, const std::string& who) const;
+  const LoopSpec& require_loop(const std::string& name, const Subject& who) const;
 
   /// Requires a joint of one coordinate: revolute, prismatic or helical.
-  void require_one_coordinate(const std::string& name, Location at, const std::string& who) const;
+  void require_one_coordinate(const std::string& name, const Subject& who) const;
 
  private:
   const Scene& scene_;
@@ -51,9 +59,9 @@ const DriveSpec* drive_of(const Scene& scene, std::string DriveSpec::*owner,
 /// Checks joints known, as many coordinates and ratios, none a part of a quaternion, none twice.
 /// Returns whether all are driven.
 bool check_coordinates(const Scene& scene, const Census& census, const LoopSpec& coupler,
-                       const std::string& who);
+                       const Subject& who);
 bool check_coordinates(const Scene& scene, const Census& census, const ForceSpec& spring,
-                       const std::string& who);
+                       const Subject& who);
 
 /// check_coordinates(); numbers finite, not all driven.
 void check_coupler(const Scene& scene, const Census& census, const LoopSpec& loop);
@@ -82,17 +90,16 @@ void check_lagrangian(const Scene& scene);
 
 /// Checks limits and stops of a joint or of a force along a length. @throws SceneError
 template <class Spec>
-void check_limits(const Scene& scene, const Spec& s, const std::string& who) {
-  require(!s.limits || (std::isfinite((*s.limits)[0]) && std::isfinite((*s.limits)[1]) &&
-                        (*s.limits)[0] < (*s.limits)[1]),
-          scene, s.at, who, "limits must be finite, the first below the second [rad or m]");
-  require(std::isfinite(s.stop_stiffness) && std::isfinite(s.stop_damping) &&
-              std::isfinite(s.stop_width) && s.stop_stiffness >= 0 && s.stop_damping >= 0 &&
-              s.stop_width > 0,
-          scene, s.at, who,
-          "stop_stiffness and stop_damping must be finite and >= 0, stop_width finite and > 0");
-  require(s.limits || (s.stop_stiffness == 0 && s.stop_damping == 0), scene, s.at, who,
-          "stop_stiffness and stop_damping need limits");
+void check_limits(const Spec& s, const Subject& who) {
+  who.require(!s.limits || (std::isfinite((*s.limits)[0]) && std::isfinite((*s.limits)[1]) &&
+                            (*s.limits)[0] < (*s.limits)[1]),
+              "limits must be finite, the first below the second [rad or m]");
+  who.require(std::isfinite(s.stop_stiffness) && std::isfinite(s.stop_damping) &&
+                  std::isfinite(s.stop_width) && s.stop_stiffness >= 0 && s.stop_damping >= 0 &&
+                  s.stop_width > 0,
+              "stop_stiffness and stop_damping must be finite and >= 0, stop_width finite and > 0");
+  who.require(s.limits || (s.stop_stiffness == 0 && s.stop_damping == 0),
+              "stop_stiffness and stop_damping need limits");
 }
 
 }  // namespace momenta::reading
