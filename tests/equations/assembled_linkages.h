@@ -2,6 +2,7 @@
 // Mechanisms whose assemblies are counted, and how they are asked for.
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kinematics/assemblies.h>
@@ -28,27 +29,14 @@ inline Assemblies found_in(const Scene& scene, const AssembliesRequest& request)
 inline LoopSpec rod_between(const std::string& name, const std::string& body,
                             const Eigen::Vector3d& foot, const Eigen::Vector3d& seat,
                             double length) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::distance;
-  loop.parent = "ground";
-  loop.child = body;
-  loop.origin_parent = foot;
-  loop.origin_child = seat;
+  LoopSpec loop = make_loop(LoopKind::distance, name, "ground", body, foot, seat);
   loop.length = length;
   return loop;
 }
 
 inline LoopSpec pin(const std::string& name, const std::string& parent, const std::string& child,
                     const Eigen::Vector3d& at_parent, const Eigen::Vector3d& at_child) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::revolute;
-  loop.parent = parent;
-  loop.child = child;
-  loop.origin_parent = at_parent;
-  loop.origin_child = at_child;
-  return loop;
+  return make_loop(LoopKind::revolute, name, parent, child, at_parent, at_child);
 }
 
 /// A four-bar whose crank, joint O, stands at θ, closed; 1, 2, 1.8 on a ground of 2.2.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "equations/parts.h"
+
 namespace momenta::equations {
 
 /// What stood on the ground stands on the base, which the last of `joints` carries; `bodies`: those
@@ -32,13 +34,7 @@ inline BodySpec massless(const std::string& name) {
 }
 inline JointSpec base_joint(const std::string& name, JointKind kind, const std::string& parent,
                             const std::string& child, const Eigen::Vector3d& axis) {
-  JointSpec joint;
-  joint.name = name;
-  joint.kind = kind;
-  joint.parent = parent;
-  joint.child = child;
-  joint.axis = axis;
-  return joint;
+  return make_joint(kind, name, parent, child, {0, 0, 0}, axis);
 }
 
 }  // namespace momenta::equations

@@ -1,4 +1,5 @@
 #include "equations/descriptions.h"
+#include "equations/parts.h"
 
 #include <momenta/core/plan.h>
 
@@ -172,12 +173,7 @@ void hand_on(RandomTree& random, Scene& scene, const std::string& from, const st
 
 JointSpec weld(const std::string& name, const std::string& parent, const std::string& child,
                const Frame& f) {
-  JointSpec w;
-  w.name = name;
-  w.kind = JointKind::weld;
-  w.parent = parent;
-  w.child = child;
-  w.origin_parent = f.at;
+  JointSpec w = make_joint(JointKind::weld, name, parent, child, f.at);
   w.rotation = f.turn;
   return w;
 }

@@ -1,4 +1,5 @@
 #include "equations/ensemble.h"
+#include "equations/runs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,14 +39,7 @@ Start start_of(const Mechanism& mechanism) {
 
 RunResult run_of(const Mechanism& mechanism, const std::string& form, const std::string& integrator,
                  const std::string& gauge, double tolerance, double end, double max_cpu_seconds) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.gauge = gauge;
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = 20;
-  request.keep_trajectory = true;
+  RunRequest request = kept(adaptive(form, integrator, gauge, tolerance, end, 20));
   request.max_cpu_seconds = max_cpu_seconds;
   return run_form(mechanism, start_of(mechanism), request);
 }

@@ -3,6 +3,7 @@
 // index 2 in a gauge that is changed at random.
 
 #include "equations/ensemble.h"
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -101,11 +102,7 @@ inline Scene example_of(const char* name) {
 /// The four-bar's crank turned by a prescribed motion, cut at the crank's hinge.
 inline Scene driven_crank() {
   Scene scene = example_of("four_bar");
-  DriveSpec d;
-  d.kind = "polynomial";
-  d.coefficients = {1.5707963267948966, 4, 0.5};
-  d.joint = "O";
-  scene.drives.push_back(d);
+  scene.drives.push_back(polynomial("O", {1.5707963267948966, 4, 0.5}));
   scene.held.clear();
   return scene;
 }

@@ -1,6 +1,7 @@
 #include "equations/large_scenes.h"
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 
 #include <cmath>
 #include <numbers>
@@ -17,14 +18,7 @@ Scene hanging(const char* name) {
 
 LoopSpec closing(const std::string& name, const std::string& parent, const std::string& child,
                  const Eigen::Vector3d& on_parent, const Eigen::Vector3d& on_child) {
-  LoopSpec l;
-  l.name = name;
-  l.kind = LoopKind::revolute;
-  l.parent = parent;
-  l.child = child;
-  l.origin_parent = on_parent;
-  l.origin_child = on_child;
-  return l;
+  return make_loop(LoopKind::revolute, name, parent, child, on_parent, on_child);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "equations/linkages.h"
+#include "equations/parts.h"
 
 #include <cmath>
 #include <numbers>
@@ -15,10 +16,7 @@ std::vector<double> orientations() {
 }
 
 BodySpec rod(const std::string& name, double width) {
-  BodySpec b;
-  b.name = name;
-  b.mass = 1;
-  b.com = {0.5, 0, 0};
+  BodySpec b = make_body(name, 1, {0, 0, 0}, {0.5, 0, 0});
   const double across = (1 + width * width) / 12, along = width * width / 6;
   b.inertia = Eigen::Vector3d(along, across, across).asDiagonal();
   return b;
@@ -26,13 +24,7 @@ BodySpec rod(const std::string& name, double width) {
 
 JointSpec hinge(const std::string& name, const std::string& parent, const std::string& child,
                 const Eigen::Vector3d& origin_parent, double angle) {
-  JointSpec j;
-  j.name = name;
-  j.parent = parent;
-  j.child = child;
-  j.origin_parent = origin_parent;
-  j.position = {angle};
-  return j;
+  return make_joint(JointKind::revolute, name, parent, child, origin_parent, {0, 0, 1}, {angle});
 }
 
 Scene row_of_four_bars(int n, double angle, double rate) {
@@ -50,13 +42,8 @@ Scene row_of_four_bars(int n, double angle, double rate) {
     s.bodies.push_back(rod(level));
     s.joints.push_back(hinge("B" + std::to_string(i), upright, level, tip, -angle));
     s.joints.back().velocity = {-rate};
-    LoopSpec l;
-    l.name = "C" + std::to_string(i);
-    l.kind = LoopKind::revolute;
-    l.parent = level;
-    l.child = "upright" + std::to_string(i + 1);
-    l.origin_parent = l.origin_child = tip;
-    s.loops.push_back(l);
+    s.loops.push_back(make_loop(LoopKind::revolute, "C" + std::to_string(i), level,
+                                "upright" + std::to_string(i + 1), tip, tip));
   }
   return s;
 }
@@ -106,12 +93,7 @@ Scene bricard() {
     parent = name;
     before = own;
   }
-  LoopSpec l;
-  l.name = "P6";
-  l.kind = LoopKind::revolute;
-  l.child = parent;
-  l.origin_child = x;
-  l.origin_parent = z;
+  LoopSpec l = make_loop(LoopKind::revolute, "P6", "ground", parent, z, x);
   l.rotation = before;
   l.axis = before.conjugate() * axes[5];
   s.loops.push_back(l);
@@ -124,21 +106,13 @@ Scene platform(int legs) {
   s.gravity = {0, 0, -9.81};
   const auto body = [&](const std::string& name, double mass, const Eigen::Vector3d& com,
                         const Eigen::Vector3d& inertia) {
-    BodySpec b;
-    b.name = name;
-    b.mass = mass;
-    b.com = com;
+    BodySpec b = make_body(name, mass, {0, 0, 0}, com);
     b.inertia = inertia.asDiagonal();
     s.bodies.push_back(b);
   };
   const auto joint = [&](const std::string& name, JointKind kind, const std::string& parent,
                          const std::string& child) -> JointSpec& {
-    JointSpec j;
-    j.name = name;
-    j.kind = kind;
-    j.parent = parent;
-    j.child = child;
-    s.joints.push_back(j);
+    s.joints.push_back(make_joint(kind, name, parent, child));
     return s.joints.back();
   };
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()) *
@@ -165,13 +139,8 @@ Scene platform(int legs) {
     JointSpec& p = joint("S" + number, JointKind::prismatic, "lower" + number, "upper" + number);
     p.axis = {0, 0, 1};
     p.position = {way.norm()};
-    LoopSpec l;
-    l.name = "B" + number;
-    l.kind = LoopKind::spherical;
-    l.parent = "platform";
-    l.child = "upper" + number;
-    l.origin_parent = seat;
-    s.loops.push_back(l);
+    s.loops.push_back(
+        make_loop(LoopKind::spherical, "B" + number, "platform", "upper" + number, seat));
   }
   return s;
 }
@@ -181,11 +150,8 @@ Scene flying_rod() {
   scene.name = "a rod on a spherical joint carries a flying one";
   scene.gravity = {0, -9.81, 0};
   for (const char* name : {"held", "flying"}) scene.bodies.push_back(rod(name, 0.2));
-  JointSpec ball;
-  ball.name = "A";
-  ball.child = "held";
-  ball.kind = JointKind::spherical;
-  ball.position = {1, 0, 0, 0};
+  JointSpec ball =
+      make_joint(JointKind::spherical, "A", "ground", "held", {0, 0, 0}, {0, 0, 1}, {1, 0, 0, 0});
   ball.velocity = {0.5, 1, 0.3};
   scene.joints.push_back(ball);
   JointSpec free = ball;
@@ -195,13 +161,7 @@ Scene flying_rod() {
   free.position = {1, 0, 0, std::cos(0.3), 0, std::sin(0.3), 0};
   free.velocity = {0, 0, 0, 0.2, -1, 2};
   scene.joints.push_back(free);
-  LoopSpec loop;
-  loop.name = "C";
-  loop.kind = LoopKind::point;
-  loop.parent = "held";
-  loop.child = "flying";
-  loop.origin_parent = {1, 0, 0};
-  scene.loops.push_back(loop);
+  scene.loops.push_back(make_loop(LoopKind::point, "C", "held", "flying", {1, 0, 0}));
   return scene;
 }
 

@@ -1,4 +1,5 @@
 #include "equations/point_motions.h"
+#include "equations/parts.h"
 
 namespace momenta::equations {
 
@@ -7,11 +8,8 @@ PointMotions::PointMotions(const Mechanism& mechanism) {
   tied.loops.clear();
   std::erase_if(tied.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
   for (const MarkerSpec& m : tied.markers) {
-    LoopSpec l;
-    l.name = "tie " + std::to_string(tied.loops.size());
-    l.child = m.body;
-    l.origin_child = m.point;
-    tied.loops.push_back(l);
+    tied.loops.push_back(make_loop(LoopKind::point, "tie " + std::to_string(tied.loops.size()),
+                                   "ground", m.body, {0, 0, 0}, m.point));
   }
   // in a plane two rows are left of three
   tied_ = std::make_unique<Mechanism>(
@@ -39,10 +37,7 @@ void mark_bodies(Scene& scene) {
   scene.markers.clear();
   for (const BodySpec& body : scene.bodies)
     for (int i = 0; i < 3; ++i) {
-      MarkerSpec m;
-      m.name = body.name + " " + std::to_string(i);
-      m.body = body.name;
-      m.point = {0.1, -0.2, 0.15};
+      MarkerSpec m = make_marker(body.name + " " + std::to_string(i), body.name, {0.1, -0.2, 0.15});
       m.point[i] += 0.7;
       scene.markers.push_back(m);
     }

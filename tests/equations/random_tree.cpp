@@ -1,4 +1,5 @@
 #include "equations/random_tree.h"
+#include "equations/parts.h"
 
 #include <cmath>
 #include <map>
@@ -122,10 +123,9 @@ BodySpec RandomTree::body(int k) {
 }
 
 JointSpec RandomTree::joint(const TreeRecipe& recipe, int k) {
-  JointSpec j;
-  j.name = "joint" + std::to_string(k);
-  j.child = body_name(k);
-  j.kind = recipe.kinds[static_cast<std::size_t>(below(static_cast<int>(recipe.kinds.size())))];
+  JointSpec j = make_joint(
+      recipe.kinds[static_cast<std::size_t>(below(static_cast<int>(recipe.kinds.size())))],
+      "joint" + std::to_string(k), "ground", body_name(k));
   switch (recipe.branching) {
     case Branching::serial:
       j.parent = body_name(k - 1);

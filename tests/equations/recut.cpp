@@ -1,6 +1,7 @@
 #include "equations/recut.h"
 
 #include "equations/dense_lagrangian.h"
+#include "equations/parts.h"
 
 #include <algorithm>
 #include <map>
@@ -33,14 +34,10 @@ Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q, cons
       s.loops.push_back(l);
       continue;
     }
-    JointSpec j;
-    j.name = l.name;
-    j.parent = l.parent;
-    j.child = l.child;
-    j.origin_parent = l.origin_parent;
+    JointSpec j =
+        make_joint(JointKind::revolute, l.name, l.parent, l.child, l.origin_parent, l.axis);
     j.origin_child = l.origin_child;
     j.rotation = l.rotation;
-    j.axis = l.axis;
     edges.push_back(j);
   }
   for (const JointSpec& j : scene.joints) {
@@ -48,13 +45,8 @@ Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q, cons
       edges.push_back(j);
       continue;
     }
-    LoopSpec l;
-    l.name = j.name;
-    l.kind = LoopKind::revolute;
-    l.parent = j.parent;
-    l.child = j.child;
-    l.origin_parent = j.origin_parent;
-    l.origin_child = j.origin_child;
+    LoopSpec l =
+        make_loop(LoopKind::revolute, j.name, j.parent, j.child, j.origin_parent, j.origin_child);
     l.rotation = j.rotation;
     l.axis = j.axis;
     s.loops.push_back(l);

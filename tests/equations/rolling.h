@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <string>
 
+#include "equations/runs.h"
+
 namespace momenta::equations {
 
 inline std::string number(double x) {
@@ -83,15 +85,9 @@ radius = )" +
 
 inline RunResult run_of(const Mechanism& mechanism, const std::string& form, double end,
                         const std::string& gauge = "none") {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = is_dae_form(form) ? "ida" : "vern9";
-  request.settings.rtol = request.settings.atol = is_dae_form(form) ? 1e-10 : 1e-12;
-  request.settings.gauge = gauge;
-  request.settings.end_time = end;
-  request.settings.samples = 8;
-  request.keep_trajectory = true;
-  return run_form(mechanism, assemble(mechanism).start, request);
+  return run_form(mechanism, assemble(mechanism).start,
+                  kept(adaptive(form, is_dae_form(form) ? "ida" : "vern9", gauge,
+                                is_dae_form(form) ? 1e-10 : 1e-12, end, 8)));
 }
 /// The last of a column.
 inline double column(const RunResult& run, const std::string& name) {

@@ -1,7 +1,9 @@
 #include "equations/small_scenes.h"
 
 #include "equations/any_text.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
+#include "equations/runs.h"
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/kinds.h>
@@ -138,11 +140,8 @@ Scene sound_scene(std::span<const unsigned char> bytes, bool planar) {
   Scene s = planar ? random.planar_scene(recipe) : random.scene(recipe);
   const Tree tree = build_tree(s);
   if (planar) {
-    LoopSpec l;
-    l.name = "loop";
-    l.kind = LoopKind::revolute;
-    l.child = s.bodies.back().name;
-    l.origin_child = random.vector(0.6);
+    LoopSpec l = make_loop(LoopKind::revolute, "loop", "ground", s.bodies.back().name, {0, 0, 0},
+                           random.vector(0.6));
     l.axis = axes_at_zero(s).at(l.child).conjugate() *
              (axes_at_zero(s).at(s.joints.back().child) * s.joints.back().axis);
     close(l, s, tree);
@@ -182,14 +181,7 @@ Tried try_scene(const Scene& scene, const std::string& form) {
       return {"assembled to what is not finite"};
     if (m > 0 && rank_report(mechanism, assembly.start).rank > m) return {"rank above m"};
     plan_lines(mechanism);
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = "";
-    request.settings.gauge = "leak";
-    request.settings.rtol = request.settings.atol = 1e-5;
-    request.settings.end_time = 0.1;
-    request.settings.samples = 5;
-    request.keep_trajectory = true;
+    RunRequest request = kept(adaptive(form, "", "leak", 1e-5, 0.1, 5));
     request.max_cpu_seconds = 0.1;
     run = run_form(mechanism, assembly.start, request);
   } catch (const SceneError& error) {

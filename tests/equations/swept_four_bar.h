@@ -2,6 +2,7 @@
 // Four-bars by their lengths, whose poses trigonometry knows, and sweeps of them.
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kinematics/move.h>
@@ -40,14 +41,8 @@ struct FourBar {
     s.joints = {hinge("O", "ground", "crank", {0, 0, 0}, theta),
                 hinge("A", "crank", "coupler", {crank, 0, 0}, std::atan2(by - ay, bx - ax) - theta),
                 hinge("C", "ground", "rocker", {ground, 0, 0}, rocked)};
-    LoopSpec loop;
-    loop.name = "B";
-    loop.kind = LoopKind::revolute;
-    loop.parent = "coupler";
-    loop.child = "rocker";
-    loop.origin_parent = {coupler, 0, 0};
-    loop.origin_child = {rocker, 0, 0};
-    s.loops.push_back(loop);
+    s.loops.push_back(
+        make_loop(LoopKind::revolute, "B", "coupler", "rocker", {coupler, 0, 0}, {rocker, 0, 0}));
     return s;
   }
 };

@@ -9,6 +9,8 @@
 #include <map>
 #include <random>
 
+#include "equations/parts.h"
+
 namespace momenta::equations {
 
 template <class S>
@@ -58,10 +60,7 @@ struct Moving {
 inline BodySpec body(const std::string& name, double mass, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-0.4, 0.4);
-  BodySpec b;
-  b.name = name;
-  b.mass = mass;
-  b.com = {number(random), number(random), number(random)};
+  BodySpec b = make_body(name, mass, {0, 0, 0}, {number(random), number(random), number(random)});
   b.inertia.diagonal() << 0.3, 0.4, 0.5;
   b.inertia(0, 1) = b.inertia(1, 0) = 0.05;
   return b;

@@ -4,6 +4,7 @@
 
 #include <momenta/core/scene/files/read_scene.h>
 
+#include "equations/parts.h"
 #include "equations/user_chain.h"
 
 namespace momenta::equations {
@@ -130,14 +131,7 @@ inline Scene slider_on_curve() {
   scene.joints.pop_back();
   const auto add = [&](const char* name, JointKind kind, const char* parent, const char* child,
                        const Eigen::Vector3d& axis, double position) {
-    JointSpec joint;
-    joint.name = name;
-    joint.kind = kind;
-    joint.parent = parent;
-    joint.child = child;
-    joint.axis = axis;
-    joint.position = {position};
-    scene.joints.push_back(joint);
+    scene.joints.push_back(make_joint(kind, name, parent, child, {0, 0, 0}, axis, {position}));
     if (std::string(child) == "slider") return;
     BodySpec massless;
     massless.name = child;

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "equations/runs.h"
+
 namespace momenta::dae_digests {
 namespace {
 
@@ -64,16 +66,10 @@ std::string name_of(const Case& c) {
 std::string trajectory_digest(const Case& c) {
   const Mechanism mechanism(read_scene(source / "examples" / c.scene / "scene.toml"),
                             {Algebra::automatic, c.kkt});
-  RunRequest request;
-  request.settings.form = c.form;
-  request.settings.integrator = c.integrator;
-  request.settings.gauge = c.form == "momentum" ? "reset" : "leak:3";
+  RunRequest request = equations::kept(equations::adaptive(
+      c.form, c.integrator, c.form == "momentum" ? "reset" : "leak:3", c.tolerance, c.end, 20));
   request.settings.project = c.form == "momentum" && c.integrator != "rk4";
-  request.settings.rtol = request.settings.atol = c.tolerance;
   request.settings.step = c.step;
-  request.settings.end_time = c.end;
-  request.settings.samples = 20;
-  request.keep_trajectory = true;
   const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
   EXPECT_EQ(run.status, "done") << name_of(c) << ": " << run.reason;
   std::vector<double> numbers;

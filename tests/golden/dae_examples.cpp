@@ -1,6 +1,7 @@
 // Every example assembles, and what has a reference meets it. The tolerances are those of each
 // integrator's promise with room for the growth of local errors over the run.
 #include "equations/ensemble.h"
+#include "equations/runs.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -23,13 +24,7 @@ RunResult run_against_reference(const std::string& example, const std::string& f
   const Mechanism mechanism(read_scene(examples / example / scene));
   Reference reference(examples / example / "reference.csv");
   reference.bind(trajectory_columns(mechanism));
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "dop853";
-  request.settings.gauge = gauge;
-  request.settings.rtol = request.settings.atol = tol;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
+  RunRequest request = equations::adaptive(form, "dop853", gauge, tol, end, samples);
   request.settings.project = project;
   request.reference = &reference;
   const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
@@ -132,14 +127,7 @@ TEST(Examples, BricardMeetsItsReference) {
 }
 
 RunRequest tightest_four_bar(double tol, double end, int samples) {
-  RunRequest request;
-  request.settings.form = "momentum";
-  request.settings.integrator = "vern9";
-  request.settings.gauge = "reset";
-  request.settings.rtol = request.settings.atol = tol;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  return request;
+  return equations::adaptive("momentum", "vern9", "reset", tol, end, samples);
 }
 
 // What is left at such tolerances is rounding: 1.6e-13 to 1.3e-12 from one tolerance to the next,
@@ -232,11 +220,7 @@ RunResult run_extreme(const std::string& name, const std::string& form, double t
   const Mechanism mechanism(read_scene(folder / (name + ".toml")));
   Reference reference(folder / (name + ".csv"));
   reference.bind(trajectory_columns(mechanism));
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "dop853";
-  request.settings.rtol = request.settings.atol = tol;
-  request.settings.samples = 10;
+  RunRequest request = equations::adaptive(form, "dop853", "none", tol, 10, 10);
   request.reference = &reference;
   const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   EXPECT_EQ(run.status, "done") << run.reason;

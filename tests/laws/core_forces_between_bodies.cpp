@@ -3,6 +3,7 @@
 // that places every body from the ground and gathers the wrenches of all; and how many bodies are
 // placed. Dampers of balls alone are forces of these joints, and place none.
 
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -192,16 +193,8 @@ TEST(ForcesBetweenBodies, PlaceWhatMovesAgainstEachOther) {
   // Two branches of three and four bodies on a stem of five.
   Scene scene;
   const auto add = [&](const std::string& parent, const std::string& child) {
-    BodySpec body;
-    body.name = child;
-    body.mass = 1;
-    body.inertia = Eigen::Matrix3d::Identity();
-    scene.bodies.push_back(body);
-    JointSpec joint;
-    joint.name = child;
-    joint.parent = parent;
-    joint.child = child;
-    scene.joints.push_back(joint);
+    scene.bodies.push_back(equations::make_body(child, 1, {1, 1, 1}));
+    scene.joints.push_back(equations::make_joint(JointKind::revolute, child, parent, child));
     return child;
   };
   std::string stem = "ground", left, right;

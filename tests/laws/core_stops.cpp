@@ -1,6 +1,7 @@
 // Stops at the limits of joints: the law against its formula and a spring of its own, force as the
 // derivative of what is stored, both recursions, lanes and branches against single states.
 
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
@@ -169,12 +170,7 @@ TEST(Stops, ActInBranchesOfOneShape) {
   legs.gravity = {0, 0, -9.81};
   const auto body = [&](const std::string& name, const std::string& parent, JointKind kind,
                         double position) {
-    BodySpec b;
-    b.name = name;
-    b.mass = 1;
-    b.com = {0.1, 0.05, -0.3};
-    b.inertia = Eigen::Vector3d(0.1, 0.12, 0.05).asDiagonal();
-    legs.bodies.push_back(b);
+    legs.bodies.push_back(equations::make_body(name, 1, {0.1, 0.12, 0.05}, {0.1, 0.05, -0.3}));
     JointSpec j;
     j.name = "j" + name;
     j.kind = kind;

@@ -2,6 +2,7 @@
 // different systems of equations with one solution. Integrated by classical Runge-Kutta with step
 // h, both err by O(h⁴), so their difference falls by 16 when h is halved; so does the energy error.
 
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -142,11 +143,7 @@ TEST(Trajectories, EnergyStays) {
 TEST(Trajectories, PendulumByHand) {
   Scene scene;
   scene.gravity = {0, -9.81, 0};
-  BodySpec body;
-  body.name = "pendulum";
-  body.mass = 2;
-  body.com = {0.4, 0, 0};
-  body.inertia = Eigen::Vector3d(0.05, 0.1, 0.1).asDiagonal();
+  BodySpec body = equations::make_body("pendulum", 2, {0.05, 0.1, 0.1}, {0.4, 0, 0});
   scene.bodies.push_back(body);
   JointSpec joint;
   joint.name = "pin";

@@ -3,6 +3,7 @@
 
 #include "equations/assembled_linkages.h"
 #include "equations/decompositions.h"
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -114,14 +115,8 @@ struct PlanarPlatform {
     Scene s;
     s.name = "platform";
     s.bodies = {equations::rod("platform")};
-    JointSpec joint;
-    joint.name = "P";
-    joint.kind = JointKind::planar;
-    joint.parent = "ground";
-    joint.child = "platform";
-    joint.axis = {0, 0, 1};
-    joint.position = {place.x(), place.y(), turned};
-    s.joints = {joint};
+    s.joints = {equations::make_joint(JointKind::planar, "P", "ground", "platform", {0, 0, 0},
+                                      {0, 0, 1}, {place.x(), place.y(), turned})};
     for (int i = 0; i < 3; ++i)
       s.loops.push_back(rod_between("L" + std::to_string(i), "platform", {b[i].x(), b[i].y(), 0},
                                     {p[i].x(), p[i].y(), 0}, l[i]));
@@ -298,11 +293,7 @@ TEST(Assemblies, OfAStewartPlatformComeInMirrorImages) {
   Scene s;
   s.name = "Stewart platform";
   s.bodies = {equations::rod("platform")};
-  JointSpec joint;
-  joint.name = "P";
-  joint.kind = JointKind::free;
-  joint.parent = "ground";
-  joint.child = "platform";
+  JointSpec joint = equations::make_joint(JointKind::free, "P", "ground", "platform");
   const Vector3d place(0.1, -0.05, 0.9);
   const Eigen::Quaterniond at(Eigen::AngleAxisd(0.3, Vector3d(0.2, 0.5, 1).normalized()));
   joint.position = {place.x(), place.y(), place.z(), at.w(), at.x(), at.y(), at.z()};

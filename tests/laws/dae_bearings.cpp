@@ -4,6 +4,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/planar_pins.h"
 #include "equations/tolerance.h"
 
@@ -54,12 +55,9 @@ Scene block(double slope, double rate, const BearingSpec& b, double push = 0, do
   body.inertia.diagonal() << 0.1, 0.1, 0.2;
   body.com = {0, above, 0};
   scene.bodies = {body};
-  JointSpec joint;
-  joint.name = "S";
-  joint.kind = JointKind::prismatic;
-  joint.child = "block";
+  JointSpec joint = equations::make_joint(JointKind::prismatic, "S", "ground", "block", {0, 0, 0},
+                                          Eigen::Vector3d::UnitX());
   joint.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(-slope, Eigen::Vector3d::UnitZ()));
-  joint.axis = Eigen::Vector3d::UnitX();
   joint.velocity = {rate};
   joint.bearing = b;
   scene.joints = {joint};
@@ -152,11 +150,7 @@ TEST(Bearings, TwoPadsCarryTheMomentAcross) {
 
 TEST(Bearings, OfADrivenJointIsRefused) {
   Scene scene = block(0, 0, bearing(0.2, 0.2, 0));
-  DriveSpec drive;
-  drive.joint = "S";
-  drive.kind = "polynomial";
-  drive.coefficients = {0, 1};
-  scene.drives = {drive};
+  scene.drives = {equations::polynomial("S", {0, 1})};
   EXPECT_EQ(refusal_of(scene),
             "scene: joint 'S' is driven, so a spring, damper, friction, bearing, stop or torque on "
             "it has no effect; expected none");

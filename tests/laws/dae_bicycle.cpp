@@ -2,6 +2,7 @@
 // small motions about upright riding as published, and a run that follows them.
 
 #include "equations/rolling.h"
+#include "equations/runs.h"
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/coordinate_motion.h>
@@ -96,14 +97,9 @@ TEST(Bicycle, DisturbedBicycleFollowsItsEigenvalues) {
   const VectorXd u = start.u + capsize->s.real() * delta - l.turning.col(0);
   const Start moved = assemble(still, 0, q, u).start;
   EXPECT_LE((moved.u - u).norm(), 1e-8);
-  RunRequest run;
-  run.settings.form = "projected";
-  run.settings.integrator = "vern9";
-  run.settings.rtol = run.settings.atol = 1e-13;
-  run.settings.end_time = 2;
-  run.settings.samples = 2;
-  run.keep_trajectory = true;
-  const RunResult later = run_form(still, moved, run);
+  const RunResult later =
+      run_form(still, moved,
+               equations::kept(equations::adaptive("projected", "vern9", "none", 1e-13, 2, 2)));
   ASSERT_EQ(later.status, "done") << later.reason;
   EXPECT_NEAR(column(later, "S.q") / moved.q[7], std::exp(capsize->s.real() * 2), 1e-3);
 }

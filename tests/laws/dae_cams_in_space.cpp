@@ -17,6 +17,7 @@
 #include <algorithm>
 
 #include "equations/carried.h"
+#include "equations/parts.h"
 
 namespace momenta::dae_cams_in_space {
 namespace {
@@ -175,11 +176,7 @@ Scene pushed(const Scene& plane, const Vector3d& acceleration) {
   way.rotation = tilt();
   Scene scene = on_base(plane, {massless("base")}, {way});
   scene.gravity = gravity;
-  DriveSpec drive;
-  drive.joint = "way";
-  drive.kind = "polynomial";
-  drive.coefficients = {0, 0.3, 0.5 * acceleration.norm()};
-  scene.drives.push_back(drive);
+  scene.drives.push_back(equations::polynomial("way", {0, 0.3, 0.5 * acceleration.norm()}));
   return scene;
 }
 

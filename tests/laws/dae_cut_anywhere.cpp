@@ -4,6 +4,7 @@
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/recut.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -24,13 +25,9 @@ Scene example(const std::string& name) {
 /// How far each hinge has turned since the start, by name, at the end of a run.
 std::map<std::string, double> turns(const Scene& scene, Algebra algebra, double end) {
   const Mechanism mechanism(scene, {.algebra = algebra});
-  RunRequest request;
-  request.settings.gauge = "leak";
-  request.settings.rtol = request.settings.atol = 1e-11;
-  request.settings.end_time = end;
-  request.settings.samples = 1;
-  request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+  const RunResult run =
+      run_form(mechanism, equations::start_of(mechanism),
+               equations::kept(equations::adaptive("momentum", "dop853", "leak", 1e-11, end, 1)));
   EXPECT_EQ(run.status, "done") << run.reason;
   std::map<std::string, double> by_name;
   for (std::size_t i = 0; i < run.trajectory.columns.size(); ++i)

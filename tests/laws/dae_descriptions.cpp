@@ -17,6 +17,7 @@
 #include "equations/other_trees.h"
 #include "equations/point_motions.h"
 #include "equations/random_mechanisms.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -176,13 +177,9 @@ constexpr double run_tolerance = 1e-10;
 /// The markers' places at the end of a short run, if it is done and comes near no singular pose.
 std::optional<Matrix3Xd> at_the_end(const Description& d, std::string& status) {
   const Mechanism mechanism(d.scene);
-  RunRequest request;
-  request.settings.integrator = "dop853";
-  request.settings.rtol = request.settings.atol = run_tolerance;
-  request.settings.end_time = 0.1;
-  request.settings.samples = 2;
-  request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(
+      mechanism, assemble(mechanism).start,
+      equations::kept(equations::adaptive("momentum", "dop853", "none", run_tolerance, 0.1, 2)));
   status = run.status + " " + run.reason;
   if (run.status != "done" || !run.singular_crossings.empty()) return std::nullopt;
   const auto& labels = run.trajectory.columns;

@@ -4,8 +4,10 @@
 #include "equations/dense_lagrangian.h"
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/recut.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -38,15 +40,9 @@ const std::vector<Way> in_every_way{{},
 
 /// The last sample by column; what moves along loops must keep to rounding.
 std::map<std::string, double> end_of(const Mechanism& mechanism, const Way& how, double end) {
-  RunRequest request;
-  request.settings.form = how.form;
-  request.settings.integrator = how.integrator;
-  request.settings.gauge = how.gauge;
-  request.settings.rtol = request.settings.atol = how.tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = 4;
-  request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism),
+                                 equations::kept(equations::adaptive(
+                                     how.form, how.integrator, how.gauge, how.tolerance, end, 4)));
   EXPECT_EQ(run.status, "done") << how.form << ": " << run.reason;
   std::map<std::string, double> last;
   if (run.trajectory.rows.empty()) return last;
@@ -69,11 +65,7 @@ DriveSpec harmonic(double offset, double amplitude, double frequency, double pha
 }
 
 MarkerSpec marker(const std::string& name, const std::string& body, const Vector3d& point) {
-  MarkerSpec m;
-  m.name = name;
-  m.body = body;
-  m.point = point;
-  return m;
+  return equations::make_marker(name, body, point);
 }
 
 /// Every marker column alike.
@@ -164,13 +156,8 @@ Scene arm_on_a_loop(const Scene& scene, LoopKind kind) {
   const auto moving = motion.moving(Real(0), q, u, true)[1];
   Scene s = scene;
   const JointSpec k = scene.joints[1];
-  LoopSpec l;
-  l.name = k.name;
-  l.kind = kind;
-  l.parent = k.parent;
-  l.child = k.child;
-  l.origin_parent = k.origin_parent;
-  l.origin_child = k.origin_child;
+  LoopSpec l =
+      equations::make_loop(kind, k.name, k.parent, k.child, k.origin_parent, k.origin_child);
   l.rotation = k.rotation;
   l.axis = k.axis;
   l.axis2 = k.axis2;
@@ -245,10 +232,8 @@ TEST(DrivenLoops, PendulumFromAMovingPivot) {
     free.name = "F";
     free.child = "rod";
     free.kind = in_space ? JointKind::free : JointKind::planar;
-    LoopSpec l;
-    l.name = "C";
-    l.child = "rod";
-    l.kind = in_space ? LoopKind::spherical : LoopKind::point;
+    LoopSpec l = equations::make_loop(in_space ? LoopKind::spherical : LoopKind::point, "C",
+                                      "ground", "rod");
     l.origin_parent = {in_space ? 0.0 : 7.0, 0, 0};  // x is the drive's
     loop.loops = {l};
     if (in_space) {
@@ -293,11 +278,8 @@ TEST(DrivenLoops, RopePulledInKeepsItsAngularMomentum) {
     mass.mass = 2;
     mass.inertia = Vector3d(0.1, 0.1, 0.1).asDiagonal();
     s.bodies = {mass};
-    JointSpec free;
-    free.name = "F";
-    free.child = "mass";
-    free.kind = JointKind::planar;
-    free.position = {l0, 0, 0};
+    JointSpec free = equations::make_joint(JointKind::planar, "F", "ground", "mass", {0, 0, 0},
+                                           {0, 0, 1}, {l0, 0, 0});
     free.velocity = {-speed, l0 * spin, 0.3};
     s.joints = {free};
     LoopSpec rope;

@@ -2,7 +2,9 @@
 // found, put back as joint forces, give the motion they were found for.
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_tree.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -26,13 +28,7 @@ Scene example(const std::string& name) {
 }
 
 DriveSpec harmonic(const std::string& joint, double offset, double amplitude, double frequency) {
-  DriveSpec d;
-  d.joint = joint;
-  d.kind = "harmonic";
-  d.offset = offset;
-  d.amplitude = amplitude;
-  d.frequency = frequency;
-  return d;
+  return equations::harmonic(joint, offset, amplitude, frequency);
 }
 
 std::vector<double> times(int count, double end) {
@@ -151,14 +147,9 @@ TEST(Effort, WithLoopsGivesTheAccelerationsOfDrives) {
     EXPECT_LT(residue(undriven(scene), r), 1e-12) << scene.name;
 
     const Mechanism driven(scene);
-    RunRequest request;
-    request.settings.form = "acceleration";
-    request.settings.integrator = "dop853";
-    request.settings.rtol = request.settings.atol = 1e-12;
-    request.settings.end_time = 2;
-    request.settings.samples = 40;
+    RunRequest request =
+        equations::kept(equations::adaptive("acceleration", "dop853", "none", 1e-12, 2, 40));
     request.settings.project = true;
-    request.keep_trajectory = true;
     const RunResult run = run_form(driven, assemble(driven).start, request);
     ASSERT_EQ(run.status, "done") << run.reason;
     ASSERT_EQ(run.trajectory.rows.size(), r.rows.size());
@@ -214,10 +205,7 @@ TEST(Effort, OfAScrewIsTorqueApartFromThrust) {
   nut.mass = m;
   nut.inertia = Eigen::Vector3d(0.15, 0.15, J).asDiagonal();
   scene.bodies = {nut};
-  JointSpec screw;
-  screw.name = "S";
-  screw.kind = JointKind::helical;
-  screw.child = "nut";
+  JointSpec screw = equations::make_joint(JointKind::helical, "S", "ground", "nut");
   screw.pitch = h;
   scene.joints = {screw};
   for (const bool turned : {false, true}) {
@@ -262,11 +250,7 @@ TEST(Effort, OfAScrewInALoopIsThrustOfTheLoad) {
   guide.kind = JointKind::prismatic;
   guide.child = "load";
   scene.joints = {screw, guide};
-  LoopSpec seat;
-  seat.name = "B";
-  seat.kind = LoopKind::spherical;
-  seat.parent = "nut";
-  seat.child = "load";
+  LoopSpec seat = equations::make_loop(LoopKind::spherical, "B", "nut", "load");
   scene.loops = {seat};
   scene.drives = {harmonic("S", 0, 4, 2)};
   const EffortResult r = along_drives(scene, 3);

@@ -14,6 +14,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 
 #include <cmath>
 #include <filesystem>
@@ -63,13 +64,8 @@ Scene pendulum(double lift, double rate) {
 
 RunResult run(const Scene& scene, double step, double end) {
   const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = "momentum";
-  request.settings.integrator = "energy-momentum";
-  request.settings.step = step;
-  request.settings.end_time = end;
-  request.settings.samples = 77;
-  return run_form(mechanism, equations::start_of(mechanism), request);
+  return run_form(mechanism, equations::start_of(mechanism),
+                  equations::stepped("momentum", "energy-momentum", "none", step, end, 77));
 }
 
 /// A start, and steps from it.

@@ -5,6 +5,7 @@
 #include "equations/ensemble.h"
 #include "equations/kkt_blocks.h"
 #include "equations/random_tree.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -59,13 +60,7 @@ double simpson(const std::vector<double>& values, double h) {
 RunResult run_by(const Mechanism& mechanism, const Reference& reference, const std::string& form,
                  const std::string& integrator, const std::string& gauge, double tolerance,
                  double end) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.gauge = gauge;
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = 4;
+  RunRequest request = equations::adaptive(form, integrator, gauge, tolerance, end, 4);
   request.reference = &reference;
   const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
   EXPECT_EQ(run.status, "done") << form << " " << integrator << ": " << run.reason;
@@ -227,11 +222,8 @@ TEST(ErrorsOfForces, JointsWhoseReactionsAreOpenAreTold) {
 TEST(ErrorsOfForces, TheTrajectoryKeepsItsColumns) {
   const Mechanism mechanism(example("driven/scene.toml"));
   const OwnReference own = reference_of(mechanism, 0.2, 2);
-  RunRequest request;
-  request.settings.gauge = "reset";
-  request.settings.end_time = 0.2;
-  request.settings.samples = 2;
-  request.keep_trajectory = true;
+  RunRequest request =
+      equations::kept(equations::adaptive("momentum", "dop853", "reset", 1e-8, 0.2, 2));
   const RunResult without = run_form(mechanism, assemble(mechanism).start, request);
   request.reference = &own.reference;
   const RunResult with = run_form(mechanism, assemble(mechanism).start, request);
@@ -245,11 +237,7 @@ TEST(ErrorsOfForces, GoOnFromACheckpoint) {
   const Mechanism mechanism(example("four_bar/scene.toml"));
   const OwnReference own = reference_of(mechanism, 0.4, 8);
   for (const char* gauge : {"none", "reset", "leak:3"}) {
-    RunRequest request;
-    request.settings.gauge = gauge;
-    request.settings.end_time = 0.4;
-    request.settings.samples = 8;
-    request.settings.rtol = request.settings.atol = 1e-6;
+    RunRequest request = equations::adaptive("momentum", "dop853", gauge, 1e-6, 0.4, 8);
     request.reference = &own.reference;
     std::vector<Checkpoint> kept;
     request.between_steps = [&](const std::function<Checkpoint()>& make) {

@@ -16,6 +16,8 @@
 #include <numbers>
 #include <random>
 
+#include "equations/parts.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 namespace momenta::dae_events {
@@ -197,14 +199,9 @@ Scene example(const std::string& name) {
 
 RunRequest request_of(const std::string& form, const std::string& integrator, double end,
                       double tolerance = 1e-10) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.gauge = takes_gauge(form) ? "none" : "";
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = 3;
-  request.keep_trajectory = request.events = true;
+  RunRequest request = equations::kept(
+      equations::adaptive(form, integrator, takes_gauge(form) ? "none" : "", tolerance, end, 3));
+  request.events = true;
   return request;
 }
 
@@ -476,11 +473,7 @@ TEST(Events, WithoutValuesAreTold) {
 // Everything is driven: nothing is integrated, and events are found all the same.
 TEST(Events, WhereNothingIsIntegrated) {
   Scene scene = thrown("[[event]]\nwhen = \"A.q - 0.3\"\n");
-  DriveSpec drive;
-  drive.joint = "A";
-  drive.kind = "polynomial";
-  drive.coefficients = {0, 0, 1};
-  scene.drives = {drive};
+  scene.drives = {equations::polynomial("A", {0, 0, 1})};
   const RunResult result = run(scene, request_of("momentum", "dop853", 1));
   EXPECT_EQ(result.status, "done");
   ASSERT_EQ(result.events.size(), 1U);

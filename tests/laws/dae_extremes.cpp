@@ -5,6 +5,7 @@
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
+#include "equations/runs.h"
 #include "equations/scissor.h"
 #include "equations/small_scenes.h"
 
@@ -240,14 +241,8 @@ TEST(Extremes, MasslessCouplerMovesLikeOneThatWeighsNextToNothing) {
     scene.bodies[1].mass = mass;
     scene.bodies[1].inertia = mass / 3 * Eigen::Matrix3d::Identity();
     const Mechanism mechanism(scene);
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = method;
-    request.settings.gauge = gauge;
+    RunRequest request = equations::kept(equations::adaptive(form, method, gauge, 1e-9, 2));
     request.settings.project = method == "dop853" && form == "momentum";
-    request.settings.rtol = request.settings.atol = 1e-9;
-    request.settings.end_time = 2;
-    request.keep_trajectory = true;
     const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
     EXPECT_EQ(run.status, "done") << form << ": " << run.reason;
     return Eigen::VectorXd(

@@ -2,6 +2,7 @@
 // bodies behind a gear, beside the same scene with them folded away. Random scenes with loops,
 // drives and forces of every kind, closed at their start.
 
+#include "equations/parts.h"
 #include "equations/point_motions.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
@@ -477,10 +478,7 @@ Scene link_and_wheel() {
   Scene scene;
   scene.gravity = {0, -9.81, 0};
   for (const char* name : {"link", "wheel"}) {
-    BodySpec body;
-    body.name = name;
-    body.mass = 1;
-    body.inertia = 0.02 * Matrix3d::Identity();
+    BodySpec body = equations::make_body(name, 1, {0.02, 0.02, 0.02});
     JointSpec joint;
     joint.name = std::string("hinge of ") + name;
     joint.child = name;

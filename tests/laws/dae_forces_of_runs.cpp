@@ -6,6 +6,7 @@
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -174,14 +175,9 @@ struct Method {
 };
 
 RunResult run_by(const Mechanism& mechanism, const Method& how, double end) {
-  RunRequest request;
-  request.settings.form = how.form;
-  request.settings.integrator = how.integrator;
-  request.settings.gauge = how.gauge;
-  request.settings.rtol = request.settings.atol = how.tolerance;
+  RunRequest request =
+      equations::adaptive(how.form, how.integrator, how.gauge, how.tolerance, end, 50);
   request.settings.step = how.step;
-  request.settings.end_time = end;
-  request.settings.samples = 50;
   request.multipliers = true;
   return run_form(mechanism, start_of(mechanism), request);
 }
@@ -306,10 +302,7 @@ TEST(ForcesOfRuns, EveryFormWritesTheForcesOfItsStates) {
     }
   }
   // Where there are no results a sentence says so.
-  RunRequest request;
-  request.settings.integrator = "energy-momentum";
-  request.settings.step = 0.005;
-  request.settings.end_time = 0.1;
+  RunRequest request = equations::stepped("momentum", "energy-momentum", "none", 0.005, 0.1);
   try {
     run_form(mechanism, start_of(mechanism), request);
     ADD_FAILURE() << "energy-momentum took a drive";
@@ -322,14 +315,8 @@ TEST(ForcesOfRuns, EveryFormWritesTheForcesOfItsStates) {
 TEST(ForcesOfRuns, TheBalanceOfDrivesHasTheOrderOfTheMethod) {
   const Mechanism mechanism(example("driven/scene.toml"));
   const auto error = [&](double step) {
-    RunRequest request;
-    request.settings.form = "momentum";
-    request.settings.integrator = "gauss4";
-    request.settings.gauge = "reset";
-    request.settings.step = step;
-    request.settings.end_time = 2;
-    request.settings.samples = 20;
-    const RunResult run = run_form(mechanism, start_of(mechanism), request);
+    const RunResult run = run_form(mechanism, start_of(mechanism),
+                                   equations::stepped("momentum", "gauss4", "reset", step, 2, 20));
     EXPECT_EQ(run.status, "done") << run.reason;
     return run.energy_error_max;
   };
@@ -378,12 +365,7 @@ TEST(ForcesOfRuns, MultipliersConvergeToThoseOfQuadruplePrecision) {
                   1e-10 * (1 + size))
           << name << " " << i;
     const auto errors = [&](const std::string& form, const std::string& gauge, double tolerance) {
-      RunRequest request;
-      request.settings.form = form;
-      request.settings.gauge = gauge;
-      request.settings.rtol = request.settings.atol = tolerance;
-      request.settings.end_time = end;
-      request.settings.samples = 2;
+      RunRequest request = equations::adaptive(form, "dop853", gauge, tolerance, end, 2);
       request.reference = &own.reference;
       const RunResult run = run_form(mechanism, start, request);
       EXPECT_EQ(run.status, "done") << name << form << run.reason;
@@ -405,13 +387,7 @@ TEST(ForcesOfRuns, MultipliersOfImpulsesAreThoseOfTheSolution) {
   const Mechanism mechanism(example("four_bar/scene.toml"), {.cut = CutChoice::scene});
   for (const char* gauge : {"none", "reset", "flip", "leak:3"}) {
     const auto difference = [&](double step) {
-      RunRequest request;
-      request.settings.form = "momentum";
-      request.settings.integrator = "gauss6";
-      request.settings.gauge = gauge;
-      request.settings.step = step;
-      request.settings.end_time = 2;
-      request.settings.samples = 37;
+      RunRequest request = equations::stepped("momentum", "gauss6", gauge, step, 2, 37);
       request.multipliers = true;
       const RunResult run = run_form(mechanism, start_of(mechanism), request);
       EXPECT_EQ(run.status, "done") << run.reason;
@@ -436,10 +412,7 @@ TEST(ForcesOfRuns, WhatIsNotUniqueHasNoError) {
   const std::vector<double> zeros(columns.size());
   Reference reference("zeros", columns, {0, 0.1}, {zeros, zeros});
   reference.bind(trajectory_columns(mechanism));
-  RunRequest request;
-  request.settings.gauge = "reset";
-  request.settings.end_time = 0.1;
-  request.settings.samples = 1;
+  RunRequest request = equations::adaptive("momentum", "dop853", "reset", 1e-8, 0.1, 1);
   request.reference = &reference;
   const RunResult run = run_form(mechanism, start, request);
   ASSERT_EQ(run.status, "done") << run.reason;
@@ -453,12 +426,9 @@ TEST(ForcesOfRuns, ColumnsAreTheForcesOfTheState) {
   for (const std::string name :
        {"driven/scene.toml", "spatial_slider_crank/scene.toml", "extremes/three_cranks.toml"}) {
     const Mechanism mechanism(example(name));
-    RunRequest request;
-    request.settings.form = "momentum";
-    request.settings.gauge = "leak:3";
-    request.settings.end_time = 0.4;
-    request.settings.samples = 3;
-    request.keep_trajectory = request.reactions = true;
+    RunRequest request =
+        equations::kept(equations::adaptive("momentum", "dop853", "leak:3", 1e-8, 0.4, 3));
+    request.reactions = true;
     const RunResult run = run_form(mechanism, start_of(mechanism), request);
     ASSERT_EQ(run.status, "done") << run.reason;
     const auto& columns = run.trajectory.columns;

@@ -4,6 +4,7 @@
 #include "equations/ensemble.h"
 #include "equations/exact_jacobian.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
 
@@ -92,13 +93,7 @@ TEST(AllForms, LongRowBySparseMatrices) {
 }
 TEST(AllForms, DrivenCrank) {
   Scene scene = example("four_bar");
-  DriveSpec d;
-  d.joint = "O";
-  d.kind = "harmonic";
-  d.offset = scene.joints[0].position[0];
-  d.amplitude = 0.8;
-  d.frequency = 2;
-  scene.drives.push_back(d);
+  scene.drives.push_back(equations::harmonic("O", scene.joints[0].position[0], 0.8, 2));
   scene.joints[0].position.clear();
   scene.joints[0].velocity.clear();
   scene.held.clear();
@@ -111,12 +106,10 @@ TEST(AllForms, SphericalJointsAFlyingRodAndALinkBetween) {
   scene.gravity = {0, -9.81, 0};
   for (const char* name : {"left", "right", "flying"}) scene.bodies.push_back(rod(name, 0.2));
   for (int i = 0; i < 3; ++i) {
-    JointSpec j;
-    j.name = "J" + std::to_string(i);
-    j.child = scene.bodies[static_cast<std::size_t>(i)].name;
-    j.kind = i < 2 ? JointKind::spherical : JointKind::free;
-    j.origin_parent = {1.5 * i, 0, 0};
-    j.position = {std::cos(0.3 * i), 0, std::sin(0.3 * i), 0};
+    JointSpec j = equations::make_joint(
+        i < 2 ? JointKind::spherical : JointKind::free, "J" + std::to_string(i), "ground",
+        scene.bodies[static_cast<std::size_t>(i)].name, {1.5 * i, 0, 0}, {0, 0, 1},
+        {std::cos(0.3 * i), 0, std::sin(0.3 * i), 0});
     j.velocity = {0.5, 1.0 - i, 0.3};
     if (i == 2) {
       j.position.insert(j.position.begin(), {0, 1, 0.5});
@@ -208,11 +201,9 @@ TEST(Starts, SatisfyTheEquationsOfTheirForm) {
                                                 {bricard(), Algebra::spatial},
                                                 {row_of_four_bars(3, 1.1, 1), Algebra::automatic}};
   Scene driven = example("slider_crank");
-  DriveSpec d;
-  d.joint = driven.joints[0].name;
-  d.kind = "polynomial";
-  d.coefficients = {driven.joints[0].position.empty() ? 0.0 : driven.joints[0].position[0], 2, 1};
-  driven.drives.push_back(d);
+  driven.drives.push_back(equations::polynomial(
+      driven.joints[0].name,
+      {driven.joints[0].position.empty() ? 0.0 : driven.joints[0].position[0], 2, 1}));
   driven.joints[0].position.clear();
   driven.joints[0].velocity.clear();
   driven.held.clear();

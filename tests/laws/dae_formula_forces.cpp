@@ -6,6 +6,7 @@
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/refusal.h"
 #include "equations/tolerance.h"
@@ -51,11 +52,7 @@ ForceSpec spring(const std::string& child, const std::string& law) {
   return f;
 }
 MarkerSpec marker(const std::string& name, const std::string& body, double x) {
-  MarkerSpec m;
-  m.name = name;
-  m.body = body;
-  m.point = {x, 0.1, 0};
-  return m;
+  return equations::make_marker(name, body, {x, 0.1, 0});
 }
 
 /// A four-bar with formulas of everything in it, smooth.

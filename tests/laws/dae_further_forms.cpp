@@ -4,6 +4,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -42,13 +43,8 @@ Scene triple_rocker() {
   s.joints.push_back(hinge("C", "ground", "right", {1.5, 0, 0}, 1.7));
   s.joints[0].velocity = {9};
   s.held = {"O"};
-  LoopSpec l;
-  l.name = "B";
-  l.kind = LoopKind::revolute;
-  l.parent = "coupler";
-  l.child = "right";
-  l.origin_parent = l.origin_child = {1, 0, 0};
-  s.loops.push_back(l);
+  s.loops.push_back(
+      equations::make_loop(LoopKind::revolute, "B", "coupler", "right", {1, 0, 0}, {1, 0, 0}));
   return s;
 }
 

@@ -16,6 +16,7 @@
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <complex>
@@ -196,14 +197,9 @@ TEST(GaussNewton, LargeStiffMechanismsByTheLocalMatrix) {
     if (joint.parent != "ground") joint.stiffness = 1e6, joint.rest = joint.position.at(0);
   for (const char* integrator : {"gauss4", "gauss6"}) {
     const Mechanism mechanism(scene);
-    RunRequest request;
-    request.settings.form = "momentum";
-    request.settings.integrator = integrator;
-    request.settings.gauge = "flip";
-    request.settings.step = 0.01;
-    request.settings.end_time = 0.5;
-    request.settings.samples = 50;
-    const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+    const RunResult run =
+        run_form(mechanism, equations::start_of(mechanism),
+                 equations::stepped("momentum", integrator, "flip", 0.01, 0.5, 50));
     ASSERT_EQ(run.status, "done") << run.reason;
     EXPECT_EQ(run.linear_solver, "KLU, local");
     EXPECT_EQ(run.jacobian, "dual numbers");

@@ -2,6 +2,7 @@
 // the counts of the literature, and what a search finds.
 
 #include "equations/assembled_linkages.h"
+#include "equations/parts.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kinematics/homotopy.h>
@@ -123,12 +124,8 @@ TEST(CountedAssemblies, OfASliderCrankAreTwo) {
   Scene scene;
   scene.name = "slider-crank";
   scene.bodies = {equations::rod("crank"), equations::rod("coupler"), equations::rod("slider")};
-  JointSpec slide;
-  slide.name = "S";
-  slide.kind = JointKind::prismatic;
-  slide.child = "slider";
-  slide.axis = {way.x(), way.y(), 0};
-  slide.position = {s};
+  JointSpec slide = equations::make_joint(JointKind::prismatic, "S", "ground", "slider", {0, 0, 0},
+                                          {way.x(), way.y(), 0}, {s});
   scene.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
                   equations::hinge("A", "crank", "coupler", {a, 0, 0}, angle_of(P - A) - theta),
                   slide};
@@ -195,11 +192,9 @@ TEST(CountedAssemblies, OfAPlanarPlatformAreSix) {
     Scene s;
     s.name = "platform";
     s.bodies = {equations::rod("platform")};
-    JointSpec joint;
-    joint.name = "P";
-    joint.kind = JointKind::planar;
-    joint.child = "platform";
-    joint.position = {0.4 * any(random), 0.4 * any(random), 2 * any(random)};
+    JointSpec joint =
+        equations::make_joint(JointKind::planar, "P", "ground", "platform", {0, 0, 0}, {0, 0, 1},
+                              {0.4 * any(random), 0.4 * any(random), 2 * any(random)});
     s.joints = {joint};
     const Eigen::Rotation2Dd turn(joint.position[2]);
     const Vector2d place(joint.position[0], joint.position[1]);
@@ -227,10 +222,7 @@ Scene stewart(std::mt19937& random) {
   Scene s;
   s.name = "platform on six rods";
   s.bodies = {equations::rod("platform")};
-  JointSpec joint;
-  joint.name = "P";
-  joint.kind = JointKind::free;
-  joint.child = "platform";
+  JointSpec joint = equations::make_joint(JointKind::free, "P", "ground", "platform");
   const Vector3d place(0.2, -0.1, 1.1);
   const Eigen::Quaterniond at(
       Eigen::AngleAxisd(0.5, Vector3d(any(random), any(random), 1).normalized()));

@@ -5,7 +5,9 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
+#include "equations/runs.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -86,15 +88,9 @@ TEST(Index, IsTheSameInSpaceWithQuaternions) {
 
 TEST(Index, IsTheSameAlongTheMotion) {
   const Mechanism mechanism(scene_of("four_bar/scene.toml"));
-  RunRequest request;
-  request.settings.form = "momentum";
-  request.settings.integrator = "dop853";
-  request.settings.gauge = "reset";
+  RunRequest request =
+      equations::kept(equations::adaptive("momentum", "dop853", "reset", 1e-12, 0.9, 1));
   request.settings.project = true;
-  request.settings.rtol = request.settings.atol = 1e-12;
-  request.settings.end_time = 0.9;
-  request.settings.samples = 1;
-  request.keep_trajectory = true;
   const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   ASSERT_EQ(run.status, "done");
   const auto& row = run.trajectory.rows.back();
@@ -146,13 +142,7 @@ TEST(Index, DrivenMechanismsKeepTheirs) {
   Scene s = row_of_four_bars(2, 1.1);
   s.bodies.push_back(rod("rider"));
   s.joints.push_back(hinge("R", "level0", "rider", {0.5, 0, 0}, 0.4));
-  DriveSpec drive;
-  drive.joint = "O0";
-  drive.kind = "harmonic";
-  drive.offset = 1.1;
-  drive.amplitude = 0.3;
-  drive.frequency = 2.0;
-  s.drives.push_back(drive);
+  s.drives.push_back(equations::harmonic("O0", 1.1, 0.3, 2.0));
   const Mechanism mechanism(s);
   ASSERT_TRUE(mechanism.plan().drives);
   expect_promised(mechanism, equations::start_of(mechanism), least_gap);
@@ -253,13 +243,7 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
   Scene driven = row_of_four_bars(1, 1.1);
   driven.bodies.push_back(rod("rider"));
   driven.joints.push_back(hinge("R", "level0", "rider", {0.5, 0, 0}, 0.4));
-  DriveSpec drive;
-  drive.joint = "R";
-  drive.kind = "harmonic";
-  drive.offset = 0.4;
-  drive.amplitude = 0.3;
-  drive.frequency = 2.0;
-  driven.drives.push_back(drive);
+  driven.drives.push_back(equations::harmonic("R", 0.4, 0.3, 2.0));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-0.5, 0.5);
   // Loops of every kind driven in every way.

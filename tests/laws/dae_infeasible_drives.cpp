@@ -10,6 +10,8 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
+#include "equations/runs.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/assembly/drive_reach.h>
@@ -150,13 +152,9 @@ DriveSpec steady(double from, double rate) {
 
 RunResult run(const Mechanism& mechanism, const std::string& form, double end,
               const std::string& integrator = "", bool project = false) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator.empty() ? default_integrator(form, 1e-8) : integrator;
-  request.settings.gauge = "leak:3";
-  request.settings.end_time = end;
-  request.settings.samples = 50;
-  request.settings.step = 1e-3;
+  RunRequest request =
+      equations::stepped(form, integrator.empty() ? default_integrator(form, 1e-8) : integrator,
+                         "leak:3", 1e-3, end, 50);
   request.settings.project = project;
   request.max_cpu_seconds = 200;
   return run_form(mechanism, start_of(mechanism), request);
@@ -240,13 +238,7 @@ TEST(InfeasibleDrives, LoopsWithAFreedomLeftAreStretched) {
   slide.kind = JointKind::prismatic;
   slide.axis = {1, 0, 0};
   s.joints.push_back(slide);
-  LoopSpec loop;
-  loop.name = "D";
-  loop.kind = LoopKind::revolute;
-  loop.parent = "c";
-  loop.child = "slider";
-  loop.origin_parent = {1, 0, 0};
-  s.loops = {loop};
+  s.loops = {equations::make_loop(LoopKind::revolute, "D", "c", "slider", {1, 0, 0})};
   DriveSpec drive = steady(0, 1);
   drive.joint = "S";
   s.drives = {drive};
@@ -306,13 +298,7 @@ Linkage random_slider_crank(const Uniform& uniform) {
       hinge("S", "ground", "slider", {0, e, 0}, a * std::cos(from) + b * std::cos(coupler))};
   s.joints.back().kind = JointKind::prismatic;
   s.joints.back().axis = {1, 0, 0};
-  LoopSpec loop;
-  loop.name = "B";
-  loop.kind = LoopKind::revolute;
-  loop.parent = "b";
-  loop.child = "slider";
-  loop.origin_parent = {b, 0, 0};
-  s.loops = {loop};
+  s.loops = {equations::make_loop(LoopKind::revolute, "B", "b", "slider", {b, 0, 0})};
   s.drives = {law};
   s.drives.back().joint = "O";
   return {s, room_at};
@@ -386,14 +372,8 @@ Linkage random_spatial(const Uniform& uniform) {
   // The rocker's rod, along its x, turns about the joint's x from the joint's y.
   s.joints.back().axis = {1, 0, 0};
   s.bodies.back().com = Eigen::Vector3d(0, s.bodies.back().com.x(), 0);
-  LoopSpec loop;
-  loop.name = "B";
-  loop.kind = LoopKind::distance;
+  LoopSpec loop = equations::make_loop(LoopKind::distance, "B", "a", "c", {a, 0, 0}, {0, c, 0});
   loop.length = b;
-  loop.parent = "a";
-  loop.child = "c";
-  loop.origin_parent = {a, 0, 0};
-  loop.origin_child = {0, c, 0};
   s.loops = {loop};
   s.drives = {law};
   s.drives.back().joint = "O";

@@ -1,6 +1,7 @@
 // Poses followed along their curve against trigonometry, against assembly pose by pose, and against
 // each other.
 
+#include "equations/parts.h"
 #include "equations/swept_four_bar.h"
 
 #include <gtest/gtest.h>
@@ -257,13 +258,7 @@ Scene in_line(double crank, double rod) {
               equations::hinge("P", "ground", "piston", {0, 0, 0}, crank + rod)};
   s.joints[2].kind = JointKind::prismatic;
   s.joints[2].axis = {1, 0, 0};
-  LoopSpec loop;
-  loop.name = "B";
-  loop.kind = LoopKind::revolute;
-  loop.parent = "rod";
-  loop.child = "piston";
-  loop.origin_parent = {rod, 0, 0};
-  s.loops.push_back(loop);
+  s.loops.push_back(equations::make_loop(LoopKind::revolute, "B", "rod", "piston", {rod, 0, 0}));
   return s;
 }
 
@@ -354,14 +349,8 @@ TEST(Kinematics, SingularEndsAreFoundAtEveryStep) {
               equations::hinge("bd", "ob", "bd", {arm, 0, 0}, angle(D - B) - half + opens)};
   const auto pin = [&](const char* name, const char* parent, const char* child, double at,
                        double there) {
-    LoopSpec loop;
-    loop.name = name;
-    loop.kind = LoopKind::revolute;
-    loop.parent = parent;
-    loop.child = child;
-    loop.origin_parent = {at, 0, 0};
-    loop.origin_child = {there, 0, 0};
-    s.loops.push_back(loop);
+    s.loops.push_back(
+        equations::make_loop(LoopKind::revolute, name, parent, child, {at, 0, 0}, {there, 0, 0}));
   };
   pin("C", "crank", "ac", crank, side);
   pin("C2", "crank", "bc", crank, side);

@@ -2,6 +2,7 @@
 // the same coordinates, in every form; power; derivatives against differences in quad precision;
 // the literature's numbers.
 
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -299,12 +300,8 @@ lagrangian = "(1 + 0.2*cos(y))*x.dot^2/2 + (1 + 0.3*sin(t))*y.dot^2/2 + x*y.dot*
 force = { x = "-0.4*x.dot" }
 )toml"));
   const Start start = assemble(mechanism).start;
-  RunRequest request;
-  request.settings.form = "momentum";
-  request.settings.integrator = "dop853";
-  request.settings.rtol = request.settings.atol = 1e-13;
-  request.settings.end_time = 5;
-  const RunResult run = run_form(mechanism, start, request);
+  const RunResult run =
+      run_form(mechanism, start, equations::adaptive("momentum", "dop853", "none", 1e-13, 5));
   ASSERT_EQ(run.status, "done") << run.reason;
   ASSERT_FALSE(run.series.energy.empty());
   EXPECT_LT(run.energy_error_max, 1e-10);

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 #include "equations/traced_four_bar.h"
 
@@ -166,11 +167,7 @@ TEST(Least, EffortsAsByInverseDynamics) {
   const auto mechanism = family.at(family.own());
   const double start = assemble(*mechanism, Assembled::rates).start.q[0];
   EffortRequest request;
-  DriveSpec drive;
-  drive.joint = "O";
-  drive.kind = "polynomial";
-  drive.coefficients = {start, rate};
-  request.motion.drives = {drive};
+  request.motion.drives = {equations::polynomial("O", {start, rate})};
   request.actuated = {"O"};
   for (const double s : parts.places())
     if (s >= start) request.motion.times.push_back((s - start) / rate);

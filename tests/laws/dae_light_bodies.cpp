@@ -2,6 +2,7 @@
 // plan leaves a mechanism to the sweeps, they agree with themselves in quadruple precision.
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/quad_loops.h"
 
 #include <gtest/gtest.h>
@@ -147,34 +148,17 @@ Scene ladder_on_a_slide(int pairs, double foot) {
                               : equations::hinge("A" + n, "b" + below, "a" + n, {1, 0, 0}, -cross));
     s.joints.push_back(equations::hinge("B" + n, "a" + n, "b" + n, {1, 0, 0}, cross));
     if (i == 0) continue;
-    LoopSpec c;
-    c.name = "C" + n;
-    c.kind = LoopKind::revolute;
-    c.parent = "a" + below;
-    c.child = "b" + n;
-    c.origin_parent = {2, 0, 0};
-    c.origin_child = {-1, 0, 0};
-    s.loops.push_back(c);
+    s.loops.push_back(equations::make_loop(LoopKind::revolute, "C" + n, "a" + below, "b" + n,
+                                           {2, 0, 0}, {-1, 0, 0}));
   }
   BodySpec slide;
   slide.name = "foot";
   slide.mass = foot;
   s.bodies.push_back(slide);
-  JointSpec along;
-  along.name = "S";
-  along.kind = JointKind::prismatic;
-  along.parent = "ground";
-  along.child = "foot";
-  along.axis = {1, 0, 0};
-  along.position = {2 * std::cos(tilt)};
-  s.joints.push_back(along);
-  LoopSpec end;
-  end.name = "F";
-  end.kind = LoopKind::revolute;
-  end.parent = "foot";
-  end.child = "b0";
-  end.origin_child = {-1, 0, 0};
-  s.loops.push_back(end);
+  s.joints.push_back(equations::make_joint(JointKind::prismatic, "S", "ground", "foot", {0, 0, 0},
+                                           {1, 0, 0}, {2 * std::cos(tilt)}));
+  s.loops.push_back(
+      equations::make_loop(LoopKind::revolute, "F", "foot", "b0", {0, 0, 0}, {-1, 0, 0}));
   return s;
 }
 

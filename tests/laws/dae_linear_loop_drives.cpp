@@ -4,6 +4,7 @@
 #include "equations/dense_lagrangian.h"
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/quad_linear_twin.h"
 #include "equations/recut.h"
 
@@ -59,10 +60,7 @@ Scene closed_arm(LoopKind kind, int coordinates, int origins) {
   }
   const Tree tree = build_tree(s);
   const Eigen::Isometry3d pose = DenseLagrangian(s, tree).poses(0, tree.q0).back();
-  LoopSpec l;
-  l.name = "L";
-  l.kind = kind;
-  l.child = "b6";
+  LoopSpec l = equations::make_loop(kind, "L", "ground", "b6");
   l.axis = Vector3d(0.2, -0.5, 1).normalized();
   if (kind == LoopKind::universal) l.axis2 = Vector3d(1, 0.3, -0.2).normalized();
   if (kind == LoopKind::planar) l.direction = Vector3d(1, 0.2, 0.1).normalized();

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/quad_linear_twin.h"
 #include "equations/refusal.h"
 
@@ -78,11 +79,7 @@ Scene marked_four_bar() {
   scene.joints[0].stiffness = 3;
   scene.joints[0].rest = 1.2;
   scene.joints[1].damping = 0.4;
-  MarkerSpec marker;
-  marker.name = "tip";
-  marker.body = scene.bodies[1].name;
-  marker.point = {0.3, 0.2, 0};
-  scene.markers.push_back(marker);
+  scene.markers.push_back(equations::make_marker("tip", scene.bodies[1].name, {0.3, 0.2, 0}));
   return scene;
 }
 
@@ -91,13 +88,7 @@ Scene driven_four_bar() {
   Scene scene = marked_four_bar();
   scene.joints[0].stiffness = scene.joints[0].rest = 0;
   scene.joints[0].position.clear();
-  DriveSpec drive;
-  drive.joint = scene.joints[0].name;
-  drive.kind = "harmonic";
-  drive.offset = 1.1;
-  drive.amplitude = 0.4;
-  drive.frequency = 3;
-  scene.drives.push_back(drive);
+  scene.drives.push_back(equations::harmonic(scene.joints[0].name, 1.1, 0.4, 3));
   return scene;
 }
 
@@ -230,11 +221,7 @@ TEST(LinearModels, OfAPendulumOnADrivenSlideAreThoseByHand) {
   turn.position = {theta};
   turn.velocity = {omega};
   scene.joints = {x, turn};
-  DriveSpec drive;
-  drive.joint = "x";
-  drive.kind = "polynomial";
-  drive.coefficients = {0.1, 0.2, f2 / 2};
-  scene.drives = {drive};
+  scene.drives = {equations::polynomial("x", {0.1, 0.2, f2 / 2})};
   const Mechanism mechanism(scene);
   LinearRequest request;
   request.inputs = {"turn.tau", "drives"};
@@ -260,12 +247,9 @@ Scene two_rods_on_balls() {
   scene.gravity = {0, 0, -9.81};
   for (const char* name : {"a", "b"}) {
     scene.bodies.push_back(rod(name, 0.1));
-    JointSpec ball;
-    ball.name = std::string(name) + "_ball";
-    ball.kind = JointKind::spherical;
-    ball.parent = scene.bodies.size() == 1 ? "ground" : "a";
-    ball.child = name;
-    ball.origin_parent = {scene.bodies.size() == 1 ? 0.0 : 1.0, 0, 0};
+    JointSpec ball = equations::make_joint(JointKind::spherical, std::string(name) + "_ball",
+                                           scene.bodies.size() == 1 ? "ground" : "a", name,
+                                           {scene.bodies.size() == 1 ? 0.0 : 1.0, 0, 0});
     ball.velocity = {0.4, -0.7, 1.1};
     scene.joints.push_back(ball);
   }

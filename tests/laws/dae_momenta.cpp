@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -148,14 +149,9 @@ TEST(Energy, ChangesByTheDissipatedPower) {
   for (const auto& [form, integrator] :
        {std::pair{"momentum", "dop853"}, std::pair{"acceleration", "dop853"},
         std::pair{"momentum-index2", "ida"}, std::pair{"stabilised-index2", "ida"}}) {
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = integrator;
-    request.settings.rtol = request.settings.atol = 1e-10;
-    request.settings.end_time = 4;
-    request.settings.samples = 200;
-    request.keep_trajectory = true;
-    const RunResult run = run_form(mechanism, start, request);
+    const RunResult run =
+        run_form(mechanism, start,
+                 equations::kept(equations::adaptive(form, integrator, "none", 1e-10, 4, 200)));
     ASSERT_EQ(run.status, "done") << run.reason;
     // T + V itself moves by joules, the balance by what the integrator errs.
     const auto e = mechanism.evaluation<double>();

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -209,15 +210,9 @@ TEST(Bdf5, ImpulsesAreThoseOfOneStep) {
 
 RunResult run(const Mechanism& mechanism, const std::string& form, const std::string& gauge,
               double tolerance, double end, int samples = 20) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "bdf5";
-  request.settings.gauge = gauge;
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  request.keep_trajectory = true;
-  return run_form(mechanism, equations::start_of(mechanism), request);
+  return run_form(
+      mechanism, equations::start_of(mechanism),
+      equations::kept(equations::adaptive(form, "bdf5", gauge, tolerance, end, samples)));
 }
 
 // Where IDA with a leak ends at 3e-12: rounding of Φ over the step is an impulse, and no shorter
@@ -281,11 +276,7 @@ TEST(DaeForms, SoftenedRowsHoldAtTheStart) {
     for (std::size_t i = r.size() - static_cast<std::size_t>(mechanism.m()); i < r.size(); ++i)
       EXPECT_LT(std::abs(r[i]), 1e-13) << name;
   }
-  RunRequest request;
-  request.settings.form = "momentum-index2";
-  request.settings.integrator = "bdf5";
-  request.settings.rtol = request.settings.atol = 1e-10;
-  request.settings.end_time = 0.01;
+  RunRequest request = equations::adaptive("momentum-index2", "bdf5", "none", 1e-10, 0.01);
   request.max_cpu_seconds = 200;
   const RunResult run = run_form(mechanism, start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
@@ -294,12 +285,7 @@ TEST(DaeForms, SoftenedRowsHoldAtTheStart) {
 TEST(Bdf5, GaugesThatAMethodCannotTake) {
   const Mechanism mechanism(example("four_bar"));
   const auto refusal = [&](const std::string& integrator, const std::string& gauge) {
-    RunRequest request;
-    request.settings.form = "momentum-index2";
-    request.settings.integrator = integrator;
-    request.settings.gauge = gauge;
-    request.settings.end_time = 1;
-    request.settings.samples = 1;
+    RunRequest request = equations::adaptive("momentum-index2", integrator, gauge, 1e-8, 1, 1);
     try {
       run_form(mechanism, equations::start_of(mechanism), request);
     } catch (const std::invalid_argument& e) {

@@ -6,6 +6,7 @@
 #include "equations/half_explicit.h"
 #include "equations/index2_trees.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -181,15 +182,10 @@ TEST(HalfExplicit, TheSameMotionInEveryGauge) {
 
 RunResult run_hem5(const Mechanism& mechanism, const std::string& form, double tolerance,
                    double end, int samples) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "hem5";
-  request.settings.gauge = form == "momentum-index2" ? "leak" : "";
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  request.keep_trajectory = true;
-  return run_form(mechanism, equations::start_of(mechanism), request);
+  return run_form(
+      mechanism, equations::start_of(mechanism),
+      equations::kept(equations::adaptive(form, "hem5", form == "momentum-index2" ? "leak" : "",
+                                          tolerance, end, samples)));
 }
 
 // The constraint that stands in the equations, at every sample inside steps too; the other one

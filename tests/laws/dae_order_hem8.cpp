@@ -7,6 +7,7 @@
 #include "equations/kkt_blocks.h"
 #include "equations/linkages.h"
 #include "equations/rolling.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -200,15 +201,10 @@ TEST(Hem8, TheSameMotionInEveryGauge) {
 
 RunResult run_hem8(const Mechanism& mechanism, const std::string& form, const std::string& gauge,
                    double tolerance, double end, int samples) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "hem8";
-  request.settings.gauge = form == "momentum-index2" ? gauge : "";
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  request.keep_trajectory = true;
-  return run_form(mechanism, equations::start_of(mechanism), request);
+  return run_form(
+      mechanism, equations::start_of(mechanism),
+      equations::kept(equations::adaptive(form, "hem8", form == "momentum-index2" ? gauge : "",
+                                          tolerance, end, samples)));
 }
 
 // The constraint that stands in the equations, at every sample inside steps too and at a loose
@@ -311,12 +307,7 @@ TEST(Hem8, SingularPosesCostNoSteps) {
       EXPECT_EQ(run.status, "done") << run.reason;
       return static_cast<double>(run.counters.steps + run.counters.rejected);
     };
-    RunRequest projected;
-    projected.settings.form = "momentum";
-    projected.settings.integrator = "dop853";
-    projected.settings.gauge = "reset";
-    projected.settings.rtol = projected.settings.atol = tolerance;
-    projected.settings.end_time = 10;
+    RunRequest projected = equations::adaptive("momentum", "dop853", "reset", tolerance, 10);
     projected.settings.project = true;
     ode += tried(run_form(mechanism, start_of(mechanism), projected));
     accelerations += tried(run_hem8(mechanism, "acceleration-index2", "", tolerance, 10, 1));

@@ -2,6 +2,7 @@
 // distance.
 
 #include "equations/assembled_linkages.h"
+#include "equations/parts.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/joint_places.h>
@@ -43,10 +44,7 @@ Scene on_rods(std::mt19937& random) {
   Scene s;
   s.name = "platform on six rods";
   s.bodies = {equations::rod("platform")};
-  JointSpec joint;
-  joint.name = "P";
-  joint.kind = JointKind::free;
-  joint.child = "platform";
+  JointSpec joint = equations::make_joint(JointKind::free, "P", "ground", "platform");
   const Quaterniond at(Eigen::AngleAxisd(0.5, any_vector(random).normalized()));
   joint.position = {0.2, -0.1, 1.1, at.w(), at.x(), at.y(), at.z()};
   s.joints = {joint};
@@ -82,10 +80,7 @@ void make_leg(Scene& s, int i, Leg leg, std::mt19937& random) {
   ball.child = "leg" + n;
   ball.origin_parent = seat;
   ball.origin_child = way;
-  JointSpec below;
-  below.name = "U" + n;
-  below.child = "leg" + n;
-  below.origin_parent = foot;
+  JointSpec below = equations::make_joint(JointKind::revolute, "U" + n, "ground", "leg" + n, foot);
   s.bodies.push_back(equations::rod("leg" + n));
   const Vector3d second =
       leg == Leg::reach ? Vector3d(way.normalized() + 0.6 * any_across(random, way)).normalized()
@@ -155,14 +150,7 @@ enum class Written {
 
 JointSpec joint_of(JointKind kind, const std::string& name, const std::string& parent,
                    const std::string& child, const Vector3d& at, const Vector3d& axis) {
-  JointSpec joint;
-  joint.kind = kind;
-  joint.name = name;
-  joint.parent = parent;
-  joint.child = child;
-  joint.origin_parent = at;
-  joint.axis = axis;
-  return joint;
+  return equations::make_joint(kind, name, parent, child, at, axis);
 }
 
 void write_leg(Scene& s, int i, Written how, std::mt19937& random) {
@@ -334,10 +322,7 @@ TEST(PlatformLegs, OfAStewartPlatformAreItsRods) {
   EXPECT_EQ(on_legs.paths->finite, 40);
   expect_same(platform, on_legs, rods, on_rods);
   Scene driven = platform;
-  DriveSpec drive;
-  drive.joint = "S5";
-  drive.kind = "polynomial";
-  drive.coefficients = driven.joints.back().position;
+  DriveSpec drive = equations::polynomial("S5", driven.joints.back().position);
   driven.joints.back().position.clear();
   driven.drives = {drive};
   expect_same(driven, found_in(driven, all_of({"S0", "S1", "S2", "S3", "S4"})), rods, on_rods);

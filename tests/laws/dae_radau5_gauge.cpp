@@ -3,6 +3,7 @@
 // oscillations of many periods.
 
 #include "equations/ensemble.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -62,12 +63,7 @@ TEST(Radau5, OrderWithReset) {
 
 RunResult run(const Scene& scene, double end) {
   const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = "momentum-index2";
-  request.settings.integrator = "radau5";
-  request.settings.gauge = "reset";
-  request.settings.end_time = end;
-  request.settings.samples = 50;
+  RunRequest request = equations::adaptive("momentum-index2", "radau5", "reset", 1e-8, end, 50);
   request.max_cpu_seconds = 60;
   return run_form(mechanism, equations::start_of(mechanism), request);
 }

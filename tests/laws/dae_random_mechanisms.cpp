@@ -4,6 +4,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/recut.h"
+#include "equations/runs.h"
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
@@ -51,15 +52,11 @@ std::optional<Ready> regular(const Scene& scene) {
 }
 
 RunResult run_of(const Ready& r, double step = 0) {
-  RunRequest request;
-  request.settings.integrator = step > 0 ? "rk4" : "dop853";
+  RunRequest request =
+      equations::kept(equations::adaptive("momentum", step > 0 ? "rk4" : "dop853", "reset", 1e-11,
+                                          r.mechanism->scene().run.end_time, 4));
   request.settings.step = step;
-  request.settings.gauge = "reset";
   request.settings.project = true;
-  request.settings.rtol = request.settings.atol = 1e-11;
-  request.settings.end_time = r.mechanism->scene().run.end_time;
-  request.settings.samples = 4;
-  request.keep_trajectory = true;
   request.max_cpu_seconds = 5;  // none takes a hundredth of it
   return run_form(*r.mechanism, r.start, request);
 }

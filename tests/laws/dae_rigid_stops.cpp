@@ -18,6 +18,7 @@
 #include <random>
 
 #include "equations/kkt_blocks.h"
+#include "equations/runs.h"
 
 namespace momenta::dae_rigid_stops {
 namespace {
@@ -40,15 +41,10 @@ constexpr Method methods[] = {{"momentum", "dop853", 0, 1e-8},
 RunResult run(const Scene& scene, const Method& m, double end, int samples = 100,
               double tolerance = 1e-10) {
   const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = m.form;
-  request.settings.integrator = m.integrator;
-  request.settings.gauge = takes_gauge(m.form) ? "none" : "";
-  request.settings.rtol = request.settings.atol = tolerance;
+  RunRequest request = equations::kept(equations::adaptive(
+      m.form, m.integrator, takes_gauge(m.form) ? "none" : "", tolerance, end, samples));
   request.settings.step = m.step;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  request.keep_trajectory = request.events = true;
+  request.events = true;
   return run_form(mechanism, assemble(mechanism).start, request);
 }
 

@@ -4,6 +4,7 @@
 
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/toml/parse_scene.h>
@@ -38,15 +39,11 @@ Scene flat_polygon(const std::vector<double>& edges) {
   double way = 0, direction = 1;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     const double length = std::abs(edges[i]), towards = edges[i] > 0 ? 1 : -1;
-    BodySpec body;
-    body.name = "rod" + std::to_string(i);
-    body.mass = length;
-    body.com = {length / 2, 0, 0};
-    body.inertia = Eigen::Vector3d(1e-3, length * length / 12, length * length / 12).asDiagonal();
-    JointSpec joint;
-    joint.name = "J" + std::to_string(i);
-    joint.child = body.name;
-    joint.axis = {0, 0, 1};
+    BodySpec body = equations::make_body("rod" + std::to_string(i), length,
+                                         {1e-3, length * length / 12, length * length / 12},
+                                         {length / 2, 0, 0});
+    JointSpec joint = equations::make_joint(JointKind::revolute, "J" + std::to_string(i), "ground",
+                                            body.name, {0, 0, 0}, {0, 0, 1});
     if (i > 0) {
       joint.parent = scene.bodies.back().name;
       joint.origin_parent = {std::abs(edges[i - 1]), 0, 0};
@@ -57,12 +54,9 @@ Scene flat_polygon(const std::vector<double>& edges) {
     scene.bodies.push_back(body);
     scene.joints.push_back(joint);
   }
-  LoopSpec loop;
-  loop.name = "last";
-  loop.kind = LoopKind::revolute;
-  loop.child = scene.bodies.back().name;
-  loop.origin_child = {std::abs(edges[edges.size() - 2]), 0, 0};
-  loop.origin_parent = {way, 0, 0};
+  LoopSpec loop =
+      equations::make_loop(LoopKind::revolute, "last", "ground", scene.bodies.back().name,
+                           {way, 0, 0}, {std::abs(edges[edges.size() - 2]), 0, 0});
   loop.axis = {0, 0, 1};
   scene.loops.push_back(loop);
   return scene;

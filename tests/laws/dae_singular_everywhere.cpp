@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -178,14 +179,9 @@ TEST(SingularEverywhere, StartsAtThePose) {
       const Mechanism mechanism(posed(c.scene, pose));
       for (const std::string& form : form_names()) {
         if (!is_dae_form(form)) continue;
-        RunRequest request;
-        request.settings.form = form;
-        request.settings.integrator = "ida";
-        request.settings.gauge = "leak:3";
-        request.settings.end_time = end;
-        request.settings.samples = 40;
-        request.keep_trajectory = true;
-        const RunResult r = run_form(mechanism, equations::start_of(mechanism), request);
+        const RunResult r =
+            run_form(mechanism, equations::start_of(mechanism),
+                     equations::kept(equations::adaptive(form, "ida", "leak:3", 1e-8, end, 40)));
         ASSERT_EQ(r.status, "done") << form << ": " << r.reason;
         EXPECT_TRUE(reliable(r)) << form << ": " << r.departure;
         const auto& columns = r.trajectory.columns;
@@ -216,11 +212,7 @@ TEST(SingularEverywhere, NoRestartWithoutNeed) {
 TEST(SingularEverywhere, SamplesOfARestartLieOnTheMotion) {
   const Case c = bifurcation();
   const Mechanism mechanism(c.scene);
-  RunRequest request;
-  request.settings.form = "momentum-index2";
-  request.settings.integrator = "ida";
-  request.settings.gauge = "leak:3";
-  request.settings.rtol = request.settings.atol = 1e-9;
+  RunRequest request = equations::adaptive("momentum-index2", "ida", "leak:3", 1e-9);
   request.settings.end_time = 1.2;  // the first pose is at 1.02 s
   request.settings.samples = 600;
   request.keep_trajectory = true;

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -184,12 +185,8 @@ TEST(SingularityHandling, SamplesFollowTheTolerance) {
   std::vector<double> errors, energies;
   for (const Start& start : equations::starts_of(mechanism, 4))
     for (const double tolerance : {3.16e-6, 1e-6, 1e-8, 1e-10, 1e-11}) {
-      RunRequest request;
-      request.settings.integrator = "vern9";
-      request.settings.gauge = "reset";
+      RunRequest request = equations::adaptive("momentum", "vern9", "reset", tolerance, 10, 1);
       request.settings.project = true;
-      request.settings.rtol = request.settings.atol = tolerance;
-      request.settings.samples = 1;
       request.reference = &reference;
       const RunResult looked = run_form(mechanism, start, request);
       ASSERT_EQ(looked.status, "done") << looked.reason;

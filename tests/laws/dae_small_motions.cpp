@@ -5,6 +5,7 @@
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/recut.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -299,13 +300,10 @@ TEST(SmallMotions, AreWhatARunDoes) {
     ASSERT_TRUE(poses.let_go(0, start.q, udot, lambda));
     start.udot = udot;
     start.lambda = lambda;
-    RunRequest request;
-    request.settings.form = "projected";
-    request.settings.rtol = request.settings.atol = 1e-12;
-    request.settings.end_time = 3 * 2 * std::numbers::pi / mode.angular_frequency();
-    request.settings.samples = 24;
-    request.keep_trajectory = true;
-    const RunResult run = run_form(mechanism, start, request);
+    const RunResult run = run_form(mechanism, start,
+                                   equations::kept(equations::adaptive(
+                                       "projected", "dop853", "none", 1e-12,
+                                       3 * 2 * std::numbers::pi / mode.angular_frequency(), 24)));
     ASSERT_EQ(run.status, "done") << run.reason;
     ASSERT_EQ(run.trajectory.rows.size(), 25u);
     for (const auto& row : run.trajectory.rows) {

@@ -2,6 +2,7 @@
 // freedoms, and what a search finds.
 
 #include "equations/assembled_linkages.h"
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -40,14 +41,10 @@ Scene ring(const std::vector<Line>& lines) {
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const std::string n = std::to_string(k);
     s.bodies.push_back(equations::rod("b" + n));
-    JointSpec joint;
-    joint.name = "J" + n;
-    joint.kind = lines[k].slides ? JointKind::prismatic : JointKind::revolute;
-    joint.parent = k == 0 ? "ground" : "b" + std::to_string(k - 1);
-    joint.child = "b" + n;
-    joint.origin_parent = lines[k].centre - before;
-    joint.axis = lines[k].way.normalized();
-    s.joints.push_back(joint);
+    s.joints.push_back(
+        equations::make_joint(lines[k].slides ? JointKind::prismatic : JointKind::revolute, "J" + n,
+                              k == 0 ? "ground" : "b" + std::to_string(k - 1), "b" + n,
+                              lines[k].centre - before, lines[k].way.normalized()));
     before = lines[k].centre;
   }
   LoopSpec weld;
@@ -279,12 +276,8 @@ Scene rssr(std::mt19937& random, int writing) {
     return s;
   }
   s.bodies.push_back(equations::rod("rod"));
-  JointSpec ball;
-  ball.name = "B";
-  ball.kind = JointKind::spherical;
-  ball.parent = "b0";
-  ball.child = "rod";
-  ball.origin_parent = a - s.joints[0].origin_parent;
+  JointSpec ball =
+      equations::make_joint(JointKind::spherical, "B", "b0", "rod", a - s.joints[0].origin_parent);
   if (writing == 2) {  // the ball two hinges
     ball.kind = JointKind::universal;
     ball.axis2 = (b - a).cross(any_vector(random)).normalized();

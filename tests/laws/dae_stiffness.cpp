@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -35,13 +36,8 @@ Scene finger(double damping) {
 RunResult damped(double damping, const std::string& integrator,
                  const std::string& form = "momentum") {
   const Mechanism mechanism(finger(damping));
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.rtol = request.settings.atol = 1e-6;
-  request.settings.end_time = 2;
-  request.settings.samples = 10;
-  return run_form(mechanism, start_of(mechanism), request);
+  return run_form(mechanism, start_of(mechanism),
+                  equations::adaptive(form, integrator, "none", 1e-6, 2, 10));
 }
 
 TEST(Stiffness, IntervalsAreThoseOfTheLiterature) {
@@ -72,12 +68,8 @@ TEST(Stiffness, IsNotSeenInTheExamples) {
                                                              : row_of_four_bars(3, 1.1));
     for (const char* method : {"dp5", "dop853", "vern9"})
       for (const char* gauge : {"leak:3", "reset", "flip"}) {
-        RunRequest request;
-        request.settings.form = "momentum";
-        request.settings.integrator = method;
-        request.settings.gauge = gauge;
-        request.settings.end_time = 5;
-        const RunResult r = run_form(mechanism, start_of(mechanism), request);
+        const RunResult r = run_form(mechanism, start_of(mechanism),
+                                     equations::adaptive("momentum", method, gauge, 1e-8, 5));
         const std::string where = std::string(name) + " " + method + " " + gauge;
         EXPECT_EQ(r.status, "done") << where << r.reason;
         EXPECT_TRUE(std::isnan(r.stiff_from)) << where << " " << r.stiff_from;

@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equations/parts.h"
+#include "equations/runs.h"
+
 namespace momenta::dae_stops {
 namespace {
 
@@ -32,13 +35,8 @@ child = "a"
 RunResult run(const Scene& scene, double end, int samples, const std::string& form = "momentum",
               const std::string& integrator = "dop853") {
   const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.rtol = request.settings.atol = 1e-10;
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  request.keep_trajectory = true;
+  RunRequest request =
+      equations::kept(equations::adaptive(form, integrator, "none", 1e-10, end, samples));
   if (form == "acceleration") request.settings.gauge.clear();
   return run_form(mechanism, assemble(mechanism).start, request);
 }
@@ -222,21 +220,12 @@ TEST(Stops, OfBallsAndLengthsAreThoseOfHingesAndSlides) {
 TEST(Stops, ActInBranchesWithLoops) {
   Scene scene;
   const auto body = [&](const std::string& name, double mass) {
-    BodySpec b;
-    b.name = name;
-    b.mass = mass;
-    b.com = {0.4, 0.1, 0.05};
-    b.inertia = Eigen::Vector3d(0.2, 0.3, 0.25).asDiagonal();
-    scene.bodies.push_back(b);
+    scene.bodies.push_back(equations::make_body(name, mass, {0.2, 0.3, 0.25}, {0.4, 0.1, 0.05}));
   };
   const auto hinge = [&](const std::string& name, const std::string& parent,
                          const std::string& child, const Eigen::Vector3d& at, double most) {
-    JointSpec j;
-    j.name = name;
-    j.parent = parent;
-    j.child = child;
-    j.origin_parent = at;
-    j.axis = {0, 0.6, 0.8};
+    JointSpec j =
+        equations::make_joint(JointKind::revolute, name, parent, child, at, {0, 0.6, 0.8});
     j.limits = {-2, -most};
     j.stop_stiffness = 50;
     j.stop_damping = 3;
@@ -254,13 +243,8 @@ TEST(Stops, ActInBranchesWithLoops) {
     body("b" + n, 1);
     hinge("A" + n, "trunk", "a" + n, {0.1 * i, 0.3, 0}, 0.05 * (i + 1));
     hinge("B" + n, "a" + n, "b" + n, {1, 0, 0}, 0.02 * (i + 1));
-    LoopSpec rod;
-    rod.name = "L" + n;
-    rod.kind = LoopKind::distance;
-    rod.parent = "trunk";
-    rod.child = "b" + n;
-    rod.origin_parent = {0.1 * i, 1.3, 0};
-    rod.origin_child = {1, 0, 0};
+    LoopSpec rod = equations::make_loop(LoopKind::distance, "L" + n, "trunk", "b" + n,
+                                        {0.1 * i, 1.3, 0}, {1, 0, 0});
     rod.length = std::sqrt(5.0);
     scene.loops.push_back(rod);
   }

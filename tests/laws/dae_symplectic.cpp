@@ -13,6 +13,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <filesystem>
@@ -172,14 +173,9 @@ TEST(Reversible, GaussWithFlippedGauge) {
 std::pair<double, double> trend(const Scene& scene, const std::string& integrator,
                                 const std::string& gauge, double step, double end) {
   const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = "momentum";
-  request.settings.integrator = integrator;
-  request.settings.gauge = gauge;
-  request.settings.step = step;
-  request.settings.end_time = end;
-  request.settings.samples = static_cast<int>(std::lround(end / step / 4));
-  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism),
+                                 equations::stepped("momentum", integrator, gauge, step, end,
+                                                    static_cast<int>(std::lround(end / step / 4))));
   EXPECT_EQ(run.status, "done") << run.reason;
   const auto& e = run.series.energy_error;
   const auto quarter = static_cast<std::ptrdiff_t>(e.size() / 4);

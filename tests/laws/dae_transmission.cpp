@@ -2,6 +2,7 @@
 // one point; the scenes have weights, which are no part of either.
 
 #include "equations/assembled_linkages.h"
+#include "equations/parts.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kinematics/move.h>
@@ -122,14 +123,8 @@ TEST(TransmissionAngle, OfASliderCrank) {
   s.name = "slider-crank";
   s.gravity = {0, -9.81, 0};
   s.bodies = {equations::rod("crank"), equations::rod("rod"), equations::rod("block")};
-  JointSpec slide;
-  slide.name = "S";
-  slide.kind = JointKind::prismatic;
-  slide.parent = "ground";
-  slide.child = "block";
-  slide.axis = {1, 0, 0};
-  slide.origin_parent = {0, e, 0};
-  slide.position = {x};
+  JointSpec slide = equations::make_joint(JointKind::prismatic, "S", "ground", "block", {0, e, 0},
+                                          {1, 0, 0}, {x});
   s.joints = {
       equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
       equations::hinge("A", "crank", "rod", {a, 0, 0}, angle_of(Vector2d(x, e) - A) - theta),

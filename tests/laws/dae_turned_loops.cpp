@@ -11,7 +11,9 @@
 // Here the child is one free body, whose C is read off its quaternion, or the last one of a chain
 // of hinges, whose C is the product of their rotations.
 
+#include "equations/parts.h"
 #include "equations/random_tree.h"
+#include "equations/runs.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -37,12 +39,7 @@ using Eigen::VectorXd;
 constexpr double pi = std::numbers::pi;
 
 BodySpec brick(const std::string& name) {
-  BodySpec b;
-  b.name = name;
-  b.mass = 1;
-  b.com = {0.1, -0.05, 0.2};
-  b.inertia = Vector3d(0.02, 0.03, 0.04).asDiagonal();
-  return b;
+  return equations::make_body(name, 1, {0.02, 0.03, 0.04}, {0.1, -0.05, 0.2});
 }
 
 DriveSpec drive(int coordinate, double value) {
@@ -142,10 +139,7 @@ TEST(TurnedLoops, AxesOfOneFreeBodyAreInOneFromAnyStart) {
       RandomTree random(seed);
       Scene scene;
       scene.bodies = {brick("a")};
-      JointSpec joint;
-      joint.name = "J";
-      joint.kind = JointKind::free;
-      joint.child = "a";
+      JointSpec joint = equations::make_joint(JointKind::free, "J", "ground", "a");
       const Quaterniond q = random.turn();
       const Vector3d x = random.vector(2);
       joint.position = {x[0], x[1], x[2], q.w(), q.x(), q.y(), q.z()};
@@ -237,10 +231,7 @@ TEST(TurnedLoops, TheDeltaRobotIsLedBackAndRuns) {
   const Assembly a = assemble(mechanism);
   EXPECT_TRUE(turned_loops(mechanism, 0, a.start.q).empty());
   EXPECT_NE(a.branch.find("turned by 180°, and it was led back"), std::string::npos) << a.branch;
-  RunRequest request;
-  request.settings.form = "momentum-index2";
-  request.settings.integrator = "ida";
-  request.settings.end_time = 0.5;
+  RunRequest request = equations::adaptive("momentum-index2", "ida", "none", 1e-8, 0.5);
   request.max_cpu_seconds = 60;
   const RunResult run = run_form(mechanism, a.start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
@@ -264,11 +255,7 @@ TEST(TurnedLoops, DisplacementOfMassIsThatOfItsPoints) {
     }
   Scene scene;
   scene.bodies = {body};
-  JointSpec joint;
-  joint.name = "J";
-  joint.kind = JointKind::free;
-  joint.child = "a";
-  scene.joints = {joint};
+  scene.joints = {equations::make_joint(JointKind::free, "J", "ground", "a")};
   const Mechanism mechanism(scene);
   VectorXd q[2];
   Eigen::Isometry3d poses[2];
@@ -333,15 +320,9 @@ TEST(TurnedLoops, TheDeltaRobotIsTheSameHoweverWritten) {
 TEST(TurnedLoops, WhatClosesTurnedAloneIsRefused) {
   Scene scene;
   scene.bodies = {brick("a")};
-  JointSpec joint;
-  joint.name = "J";
-  joint.child = "a";
-  joint.position = {pi};
-  scene.joints = {joint};
-  LoopSpec loop;
-  loop.name = "L";
-  loop.kind = LoopKind::weld;
-  loop.child = "a";
+  scene.joints = {
+      equations::make_joint(JointKind::revolute, "J", "ground", "a", {0, 0, 0}, {0, 0, 1}, {pi})};
+  LoopSpec loop = equations::make_loop(LoopKind::weld, "L", "ground", "a");
   scene.loops = {loop};
   scene.held = {"J"};
   const Mechanism mechanism(scene);

@@ -12,6 +12,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/exact_jacobian.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 #include "equations/user_loops.h"
 
@@ -194,13 +195,7 @@ TEST(UserJointsInLoops, OneStepOfFixedSizeIsTheSameToRounding) {
         theirs(pair.built_in, {.algebra = Algebra::spatial, .cut = as_written});
     for (const std::string& form : forms_of(pair.user)) {
       if (is_dae_form(form)) continue;
-      RunRequest request;
-      request.settings.form = form;
-      request.settings.integrator = "rk4";
-      request.settings.step = 0.005;
-      request.settings.end_time = 0.4;
-      request.settings.samples = 8;
-      request.keep_trajectory = true;
+      RunRequest request = equations::kept(equations::stepped(form, "rk4", "none", 0.005, 0.4, 8));
       const RunResult x = run_form(mine, assemble(mine).start, request),
                       y = run_form(theirs, assemble(theirs).start, request);
       ASSERT_EQ(x.status, "done") << x.reason;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -167,20 +168,10 @@ TEST(Branches, AreChosenByWhatTheySave) {
   const auto legs = [](int count, int length) {
     Scene s;
     const auto add = [&](const std::string& name, const std::string& parent) {
-      BodySpec b;
-      b.name = name;
-      b.mass = 1;
-      b.com = {0.1, 0.2, 0.3};
-      b.inertia = Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal();
-      s.bodies.push_back(b);
-      JointSpec j;
-      j.name = "to_" + name;
-      j.parent = parent;
-      j.child = name;
-      j.kind = parent == "ground" ? JointKind::free : JointKind::revolute;
-      j.axis = {0, 1, 0};
-      j.origin_parent = {0.3, 0.1, 0};
-      s.joints.push_back(j);
+      s.bodies.push_back(equations::make_body(name, 1, {0.1, 0.1, 0.1}, {0.1, 0.2, 0.3}));
+      s.joints.push_back(
+          equations::make_joint(parent == "ground" ? JointKind::free : JointKind::revolute,
+                                "to_" + name, parent, name, {0.3, 0.1, 0}, {0, 1, 0}));
     };
     add("base", "ground");
     for (int leg = 0; leg < count; ++leg)

@@ -12,6 +12,7 @@
 
 #include "equations/level_symbols.h"
 #include "equations/levels.h"
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -110,11 +111,9 @@ Scene pendulums(int n) {
     b.com = {0.5, 0.1, 0};
     b.inertia = Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal();
     s.bodies.push_back(b);
-    JointSpec j;
-    j.name = "J" + std::to_string(i);
-    j.parent = i == 0 ? "ground" : "b" + std::to_string((i - 1) / 2);
-    j.child = b.name;
-    j.kind = i % 3 == 2 ? JointKind::prismatic : JointKind::revolute;
+    JointSpec j = equations::make_joint(
+        i % 3 == 2 ? JointKind::prismatic : JointKind::revolute, "J" + std::to_string(i),
+        i == 0 ? "ground" : "b" + std::to_string((i - 1) / 2), b.name);
     if (i % 3 == 2) j.axis = {1, 0, 0};
     j.origin_parent = {0.7, 0.2, 0};
     s.joints.push_back(j);

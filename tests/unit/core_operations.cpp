@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "equations/parts.h"
+
 namespace momenta::core_operations {
 namespace {
 
@@ -34,11 +36,9 @@ Scene chain(int n, double lean, bool off_axis = true) {
     b.com = {0.4, 0.1, off_axis && lean != 0 ? 0.2 : 0};
     b.inertia << 0.3, 0.02, 0.01, 0.02, 0.4, 0.03, 0.01, 0.03, 0.5;
     s.bodies.push_back(b);
-    JointSpec j;
-    j.name = "J" + std::to_string(i);
-    j.parent = i == 0 ? "ground" : "b" + std::to_string(i - 1);
-    j.child = b.name;
-    j.origin_parent = {0.5, 0.1, lean == 0 ? 0 : 0.2};
+    JointSpec j = equations::make_joint(JointKind::revolute, "J" + std::to_string(i),
+                                        i == 0 ? "ground" : "b" + std::to_string(i - 1), b.name,
+                                        {0.5, 0.1, lean == 0 ? 0 : 0.2});
     if (i > 0) j.rotation = Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX());
     s.joints.push_back(j);
   }

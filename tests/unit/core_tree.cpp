@@ -1,6 +1,7 @@
 // Trees of joints that are chains: parts, names, places in q, start values, drives; and what the
 // coordinates mean, by hand.
 
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -13,21 +14,12 @@ using Eigen::Vector3d;
 using equations::algebra_tol;
 
 BodySpec body(const std::string& name) {
-  BodySpec b;
-  b.name = name;
-  b.mass = 1;
-  b.inertia = Eigen::Matrix3d::Identity();
-  return b;
+  return equations::make_body(name, 1, {1, 1, 1});
 }
 
 JointSpec joint(JointKind kind, const std::string& parent = "ground",
                 const std::string& child = "body") {
-  JointSpec j;
-  j.name = "to " + child;
-  j.kind = kind;
-  j.parent = parent;
-  j.child = child;
-  return j;
+  return equations::make_joint(kind, "to " + child, parent, child);
 }
 
 Scene one_body(JointSpec j) {
@@ -38,11 +30,8 @@ Scene one_body(JointSpec j) {
 }
 
 DriveSpec constant(int coordinate, double value, double rate = 0) {
-  DriveSpec d;
-  d.joint = "to body";
+  DriveSpec d = equations::polynomial("to body", {value, rate});
   d.coordinate = coordinate;
-  d.kind = "polynomial";
-  d.coefficients = {value, rate};
   return d;
 }
 
@@ -68,11 +57,8 @@ TEST(Tree, PartsOfJoints) {
   scene.joints[0].position = {1, 2, 3};
   scene.joints[0].velocity = {4, 5, 6};
   scene.joints[2].position = {7, 8};
-  DriveSpec drive;
-  drive.joint = "to a";
+  DriveSpec drive = equations::polynomial("to a", {1});
   drive.coordinate = 1;
-  drive.kind = "polynomial";
-  drive.coefficients = {1};
   scene.drives.push_back(drive);
   const Tree tree = build_tree(scene);
 

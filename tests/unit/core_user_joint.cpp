@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"
 
@@ -29,12 +30,12 @@ void compare(const Chain& law, std::optional<JointSpec> whole = {}) {
           return;
         }
         for (int i = 0; i < n; ++i) {
-          JointSpec part;
-          part.name = i + 1 == n ? j.name : j.name + std::to_string(i);
-          part.kind = law.steps[static_cast<std::size_t>(i)].kind;
-          part.axis = law.steps[static_cast<std::size_t>(i)].axis;
-          part.parent = i == 0 ? j.parent : j.name + std::to_string(i - 1);
-          part.child = i + 1 == n ? j.child : j.name + std::to_string(i);
+          JointSpec part =
+              equations::make_joint(law.steps[static_cast<std::size_t>(i)].kind,
+                                    i + 1 == n ? j.name : j.name + std::to_string(i),
+                                    i == 0 ? j.parent : j.name + std::to_string(i - 1),
+                                    i + 1 == n ? j.child : j.name + std::to_string(i), {0, 0, 0},
+                                    law.steps[static_cast<std::size_t>(i)].axis);
           if (i == 0) part.origin_parent = j.origin_parent, part.rotation = j.rotation;
           if (i + 1 == n) part.origin_child = j.origin_child;
           s.joints.push_back(part);

@@ -4,6 +4,7 @@
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/files/read_scene.h>
 
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"
 
@@ -99,13 +100,7 @@ TEST(UserJoint, WhatIsRefused) {
               j.position = {0.5};
             }),
             "scene: joint 'U': law gives a matrix at the start that is no rotation within 1e-10");
-  EXPECT_EQ(message([](Scene& s, JointSpec&) {
-              DriveSpec drive;
-              drive.joint = "U";
-              drive.kind = "polynomial";
-              drive.coefficients = {1};
-              s.drives = {drive};
-            }),
+  EXPECT_EQ(message([](Scene& s, JointSpec&) { s.drives = {equations::polynomial("U", {1})}; }),
             "scene: drive of joint 'U': joint 'U' is user, expected what moves it in its law");
   EXPECT_NE(message([](Scene& s, JointSpec&) {
               LoopSpec loop;

@@ -2,6 +2,7 @@
 
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -396,14 +397,9 @@ Scene three_legs(RandomTree& random) {
     s.joints.push_back(hinge("O" + number, "ground", "thigh" + number, radius * out, 0));
     s.joints.push_back(hinge("K" + number, "thigh" + number, "shin" + number, {1, 0, 0}, 0));
     if (i == 0) continue;
-    LoopSpec l;
-    l.name = "L" + number;
-    l.kind = LoopKind::revolute;
-    l.parent = "shin" + number;
-    l.child = "plate";
-    l.origin_parent = {1, 0, 0};
-    l.origin_child = plate * Eigen::Vector3d(std::cos(i), std::sin(i), 0);
-    s.loops.push_back(l);
+    s.loops.push_back(equations::make_loop(LoopKind::revolute, "L" + number, "shin" + number,
+                                           "plate", {1, 0, 0},
+                                           plate * Eigen::Vector3d(std::cos(i), std::sin(i), 0)));
   }
   return s;
 }

@@ -4,6 +4,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
 
@@ -96,20 +97,13 @@ TEST(CarriedRows, OfALinkageThatFliesAreTwo) {
     scene.bodies.push_back(base);
     for (JointSpec& joint : scene.joints)
       if (joint.parent == "ground") joint.parent = "base";
-    JointSpec flight;
-    flight.name = "F";
-    flight.kind = JointKind::free;
-    flight.child = "base";
-    flight.position = {0.1, 0.2, 0.3, 0.5, 0.5, -0.5, 0.5};
+    JointSpec flight = equations::make_joint(JointKind::free, "F", "ground", "base", {0, 0, 0},
+                                             {0, 0, 1}, {0.1, 0.2, 0.3, 0.5, 0.5, -0.5, 0.5});
     flight.velocity = {0.3, -0.2, 0.5, 0.7, -0.4, 0.6};
     scene.joints.push_back(flight);
     if (driven) {
       scene.joints[0].position.clear();
-      DriveSpec drive;
-      drive.joint = "O";
-      drive.kind = "polynomial";
-      drive.coefficients = {1.5707963267948966, 0.4, 0.3};
-      scene.drives.push_back(drive);
+      scene.drives.push_back(equations::polynomial("O", {1.5707963267948966, 0.4, 0.3}));
     }
     const Mechanism swept(scene, {.kkt = KktChoice::sweeps}),
         dense(scene, {.kkt = KktChoice::dense});

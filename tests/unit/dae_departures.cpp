@@ -2,6 +2,7 @@
 // the balance and the rates of loops against it, and runs that are honest at any accuracy.
 
 #include "equations/linkages.h"
+#include "equations/runs.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -21,13 +22,8 @@ using namespace equations;
 
 RunResult run_of(const Mechanism& mechanism, const std::string& form, double end,
                  const std::string& integrator = "dop853", double rtol = 1e-8, double step = 0) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.rtol = request.settings.atol = rtol;
+  RunRequest request = equations::adaptive(form, integrator, "none", rtol, end, 100);
   request.settings.step = step;
-  request.settings.end_time = end;
-  request.settings.samples = 100;
   return run_form(mechanism, assemble(mechanism).start, request);
 }
 
@@ -213,11 +209,7 @@ TEST(Departures, NoStepIsTiedToAFarEnd) {
                                          {"stabilised-index2", "radau5"},
                                          {"momentum-index2", "hem5"},
                                          {"momentum-index2", "hem8"}}) {
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = integrator;
-    request.settings.end_time = 1e300;
-    request.settings.samples = 1;
+    RunRequest request = equations::adaptive(form, integrator, "none", 1e-8, 1e300, 1);
     int steps = 0;
     request.going_on = [&] { return ++steps < 200; };
     const RunResult r = run_form(mechanism, start, request);

@@ -2,6 +2,7 @@
 // what tables, files and sentences call them.
 
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -45,14 +46,8 @@ Scene coupled_rods() {
 }
 
 RunResult run_of(const Mechanism& mechanism, const std::string& form, double end) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "rk4";
-  request.settings.step = end / 200;
-  request.settings.end_time = end;
-  request.settings.samples = 20;
-  request.keep_trajectory = true;
-  return run_form(mechanism, assemble(mechanism).start, request);
+  return run_form(mechanism, assemble(mechanism).start,
+                  equations::kept(equations::stepped(form, "rk4", "none", end / 200, end, 20)));
 }
 
 std::size_t column(const RunResult& run, const std::string& name) {

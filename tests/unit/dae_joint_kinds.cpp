@@ -1,6 +1,7 @@
 // Joints of several coordinates in closed loops: columns, assembly, and two mechanisms with
 // formulas of their own.
 
+#include "equations/parts.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -25,12 +26,7 @@ BodySpec body(const std::string& name, double mass, const Vector3d& moments) {
 
 JointSpec joint(const std::string& name, JointKind kind, const std::string& parent,
                 const std::string& child) {
-  JointSpec j;
-  j.name = name;
-  j.kind = kind;
-  j.parent = parent;
-  j.child = child;
-  return j;
+  return equations::make_joint(kind, name, parent, child);
 }
 
 TEST(JointKinds, ColumnsOfSeveralCoordinates) {
@@ -43,10 +39,7 @@ TEST(JointKinds, ColumnsOfSeveralCoordinates) {
     scene.joints.push_back(joint(name, kind, "ground", std::string(name) + "b"));
   }
   scene.joints[0].pitch = 0.1;
-  DriveSpec drive;
-  drive.kind = "polynomial";
-  drive.coefficients = {0.5};
-  drive.joint = "P";
+  DriveSpec drive = equations::polynomial("P", {0.5});
   drive.coordinate = 1;
   scene.drives.push_back(drive);
   const Mechanism mechanism(scene);
@@ -78,11 +71,7 @@ TEST(JointKinds, ScrewJack) {
   scene.joints[0].position = {0.7};
   scene.joints[0].velocity = {1.3};
   scene.joints[1].pitch = h;
-  ForceSpec push;
-  push.kind = "torque";
-  push.joint = "bearing";
-  push.value = torque;
-  scene.forces.push_back(push);
+  scene.forces.push_back(equations::torque_on("bearing", torque));
   LoopSpec guide;
   guide.name = "guide";
   guide.kind = LoopKind::prismatic;

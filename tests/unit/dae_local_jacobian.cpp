@@ -5,6 +5,7 @@
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -182,15 +183,10 @@ TEST(LocalJacobian, SameMotion) {
   const Start start = equations::start_of(mechanism);
   std::vector<double> ends[2];
   for (const bool dae : {false, true}) {
-    RunRequest request;
-    request.settings.form = dae ? "momentum-index2" : "momentum";
-    request.settings.integrator = dae ? "ida" : "dop853";
-    request.settings.gauge = "leak:3";
-    request.settings.rtol = request.settings.atol = dae ? 1e-9 : 1e-11;
-    request.settings.end_time = 0.02;
-    request.settings.samples = 1;
-    request.keep_trajectory = true;
-    const RunResult run = run_form(mechanism, start, request);
+    const RunResult run = run_form(mechanism, start,
+                                   equations::kept(equations::adaptive(
+                                       dae ? "momentum-index2" : "momentum", dae ? "ida" : "dop853",
+                                       "leak:3", dae ? 1e-9 : 1e-11, 0.02, 1)));
     ASSERT_EQ(run.status, "done") << run.reason;
     EXPECT_EQ(run.linear_solver, dae ? "KLU, local" : "");
     ends[dae] = run.trajectory.rows.back();

@@ -2,6 +2,7 @@
 // and loops that no pose closes because a file has rounded their numbers.
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
 #include "equations/recut.h"
@@ -271,12 +272,9 @@ TEST(LoopRank, LoopsThatNothingMovesHaveNone) {
       scene.joints.push_back(slide);
       parent = name;
     }
-    LoopSpec loop;
-    loop.name = "table";
-    loop.kind = LoopKind::planar;
-    loop.child = "second";
+    LoopSpec loop = equations::make_loop(LoopKind::planar, "table", "ground", "second", {0, 0, 0},
+                                         random.vector(0.5));
     loop.axis = normal;
-    loop.origin_child = random.vector(0.5);
     close(loop, scene, build_tree(scene));
     scene.loops.push_back(loop);
     const Mechanism mechanism(scene, {.algebra = Algebra::spatial});

@@ -1,6 +1,7 @@
 // Loops by sweeps against Φ of positions alone, off the manifold, at random states of random trees.
 
 #include "equations/dense_loops.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
 
@@ -323,16 +324,10 @@ TEST(DrivenLoopRows, LeaveThePlane) {
     b.name = std::string(1, static_cast<char>('a' + i));
     b.mass = 1;
     b.inertia.setIdentity();
-    JointSpec j;
-    j.name = "J" + b.name;
-    j.child = b.name;
-    j.parent = i == 0 ? "ground" : "a";
-    scene.joints.push_back(j);
+    scene.joints.push_back(
+        equations::make_joint(JointKind::revolute, "J" + b.name, i == 0 ? "ground" : "a", b.name));
   }
-  LoopSpec l;
-  l.name = "C";
-  l.child = "b";
-  l.kind = LoopKind::distance;
+  LoopSpec l = equations::make_loop(LoopKind::distance, "C", "ground", "b");
   l.length = 1;
   scene.loops = {l};
   EXPECT_TRUE(Mechanism(scene).plan().planar);

@@ -5,6 +5,7 @@
 #include "equations/level_symbols.h"
 #include "equations/levels.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/quad_loops.h"
 #include "equations/random_loops.h"
 #include "equations/sweeps_against_matrix.h"
@@ -377,13 +378,9 @@ TEST(LoopSweeps, PlanSaysWhatItCannotCarry) {
   // Nine points of one body held: more equations open at once than there are slots.
   Scene scene = row_of_four_bars(1, 1.1);
   for (int i = 0; i < 8; ++i) {
-    LoopSpec l;
-    l.name = "more" + std::to_string(i);
-    l.child = "level0";
-    l.kind = LoopKind::point;
-    l.origin_child = {0.1 * i, 0, 0};
-    l.origin_parent = {0.1 * i, 0.5, 0};
-    scene.loops.push_back(l);
+    scene.loops.push_back(equations::make_loop(LoopKind::point, "more" + std::to_string(i),
+                                               "ground", "level0", {0.1 * i, 0.5, 0},
+                                               {0.1 * i, 0, 0}));
   }
   const Mechanism fallen(scene);
   EXPECT_EQ(fallen.solver().kkt(), KktChoice::sparse);

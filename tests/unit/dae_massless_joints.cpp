@@ -2,6 +2,7 @@
 // there all the same. Against the null space of M and Φ_q, and against the same mechanism without
 // those joints.
 
+#include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -38,28 +39,16 @@ void add_finger(Scene& scene, const std::string& name, const std::string& parent
                 const Vector3d& axis = Vector3d::UnitZ(), JointKind kind = JointKind::revolute) {
   BodySpec body;
   body.name = name + " link";
-  JointSpec joint;
-  joint.name = name;
-  joint.kind = kind;
-  joint.parent = parent;
-  joint.child = body.name;
-  joint.origin_parent = {0.3, 0.1, 0.2};
-  joint.axis = axis;
+  JointSpec joint = equations::make_joint(kind, name, parent, body.name, {0.3, 0.1, 0.2}, axis);
   scene.bodies.push_back(body);
   scene.joints.push_back(joint);
 }
 
 Scene arm() {
   Scene scene;
-  BodySpec body;
-  body.name = "arm";
-  body.mass = 1;
-  body.com = {0.3, 0, 0};
-  body.inertia = Vector3d(0.01, 0.05, 0.05).asDiagonal();
-  JointSpec joint;
-  joint.name = "shoulder";
-  joint.child = "arm";
-  joint.axis = {0, 1, 0};
+  BodySpec body = equations::make_body("arm", 1, {0.01, 0.05, 0.05}, {0.3, 0, 0});
+  JointSpec joint =
+      equations::make_joint(JointKind::revolute, "shoulder", "ground", "arm", {0, 0, 0}, {0, 1, 0});
   scene.bodies = {body};
   scene.joints = {joint};
   scene.gravity = {0, 0, -9.81};

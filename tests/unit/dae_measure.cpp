@@ -11,6 +11,8 @@
 #include <fstream>
 #include <random>
 
+#include "equations/runs.h"
+
 namespace momenta::dae_measure {
 namespace {
 
@@ -76,11 +78,8 @@ TEST(Growth, OfLoopsFarFromTheGroundIsNotThatOfRounding) {
   for (JointSpec& j : scene.joints)
     if (j.parent == "ground") j.origin_parent.x() += 3000;
   const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = "projected";
-  request.settings.end_time = 20;
-  request.settings.samples = 200;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, assemble(mechanism).start,
+                                 equations::adaptive("projected", "dop853", "none", 1e-8, 20, 200));
   ASSERT_EQ(run.status, "done") << run.reason;
   EXPECT_GT(run.position_drift_max, rounding_level);
   EXPECT_TRUE(std::isnan(run.position_growth.exponent)) << run.position_drift_max;

@@ -3,7 +3,9 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/random_loops.h"
+#include "equations/runs.h"
 #include "equations/scissor.h"
 #include "equations/small_scenes.h"
 
@@ -57,12 +59,7 @@ Scene beside_a_pendulum(Scene scene) {
   scene.joints.push_back(hinge("P9", "ground", "bob", {7, 0, 0}, 0.3));
   scene.joints.back().kind = JointKind::free;
   scene.joints.back().position = {7, 0, 0, 1, 0, 0, 0};
-  LoopSpec l;
-  l.name = "own";
-  l.kind = LoopKind::point;
-  l.child = "bob";
-  l.origin_parent = {7, 0, 0};
-  scene.loops.push_back(l);
+  scene.loops.push_back(equations::make_loop(LoopKind::point, "own", "ground", "bob", {7, 0, 0}));
   return scene;
 }
 
@@ -104,14 +101,9 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
 /// What drives a mechanism without freedoms is known from virtual work: λ ẋ + dE/dt = 0.
 TEST(UniqueMultipliers, OfADrivenScissorIsTheThrust) {
   const Mechanism mechanism(driven_scissor(LoopKind::cylindrical), {.algebra = Algebra::spatial});
-  RunRequest request;
-  request.settings.form = "projected";
-  request.settings.integrator = "vern9";
-  request.settings.rtol = request.settings.atol = 1e-11;
-  request.settings.end_time = 0.2;
-  request.settings.samples = 400;
-  request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+  const RunResult run =
+      run_form(mechanism, equations::start_of(mechanism),
+               equations::kept(equations::adaptive("projected", "vern9", "none", 1e-11, 0.2, 400)));
   ASSERT_EQ(run.status, "done") << run.reason;
   for (const auto& u : run.undetermined)
     EXPECT_EQ(u.samples, static_cast<long>(run.series.t.size())) << u.column;
@@ -182,14 +174,8 @@ TEST(UniqueMultipliers, AgreeOnRandomLoopsWrittenTwice) {
 }
 
 RunResult run_of(const Mechanism& mechanism, const std::string& form, double end, int samples) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = "";
-  request.settings.gauge = "leak";
-  request.settings.end_time = end;
-  request.settings.samples = samples;
-  request.keep_trajectory = true;
-  return run_form(mechanism, equations::start_of(mechanism), request);
+  return run_form(mechanism, equations::start_of(mechanism),
+                  equations::kept(equations::adaptive(form, "", "leak", 1e-8, end, samples)));
 }
 
 /// What the trajectory says of every sample against its pose; whether some are not unique.

@@ -15,6 +15,8 @@
 #include <numbers>
 #include <random>
 
+#include "equations/runs.h"
+
 namespace momenta::dae_picture {
 namespace {
 
@@ -303,12 +305,7 @@ TEST(Film, ShowsTheRunAtEqualTimesWithoutDisturbingIt) {
   const Mechanism mechanism(example("four_bar/scene.toml"));
   const Assembly a = assemble(mechanism);
   for (const std::string form : {"momentum", "acceleration-index3", "partitioned"}) {
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = "";
-    request.settings.end_time = 2;
-    request.settings.samples = 64;
-    request.keep_trajectory = true;
+    RunRequest request = equations::kept(equations::adaptive(form, "", "none", 1e-8, 2, 64));
     const RunResult plain = run_form(mechanism, a.start, request);
     request.film_intervals = 64;
     const RunResult filmed = run_form(mechanism, a.start, request);

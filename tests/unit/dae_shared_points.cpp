@@ -2,6 +2,7 @@
 // pairs of the scene.
 
 #include "equations/linkages.h"
+#include "equations/parts.h"
 #include "equations/sweeps_against_matrix.h"
 
 #include <gtest/gtest.h>
@@ -110,13 +111,9 @@ TEST(SharedPoints, AStarTakesTheSlotsOfAPath) {
     star.joints.push_back(
         hinge("O" + std::to_string(i), "ground", name, {0.1 * i, 0.02 * i * i, 0}, 0.2 * i));
     if (i == 0) continue;
-    LoopSpec l;
-    l.name = "tie" + std::to_string(i);
-    l.kind = LoopKind::revolute;
+    LoopSpec l = equations::make_loop(LoopKind::revolute, "tie" + std::to_string(i), "rod0", name,
+                                      Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitX());
     l.axis = Eigen::Vector3d::UnitZ();
-    l.parent = "rod0";
-    l.child = name;
-    l.origin_parent = l.origin_child = Eigen::Vector3d::UnitX();
     star.loops.push_back(l);
   }
   const Mechanism mechanism(star);

@@ -3,6 +3,7 @@
 
 #include "equations/any_text.h"
 #include "equations/ensemble.h"
+#include "equations/runs.h"
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
@@ -143,13 +144,8 @@ TEST(NothingMoves, AndEveryMethodComesToItsEnd) {
         std::pair{"augmented-lagrangian-canonical", "dop853"},
         std::pair{"maximal-coordinates", "dop853"}, std::pair{"momentum-stabilised", "ida"},
         std::pair{"momentum-index3", "radau5"}}) {
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = method;
-    request.settings.step = 0.1;
-    request.settings.end_time = 1;
-    request.settings.samples = 4;
-    const RunResult run = run_form(mechanism, start, request);
+    const RunResult run =
+        run_form(mechanism, start, equations::stepped(form, method, "none", 0.1, 1, 4));
     EXPECT_EQ(run.status, "done") << form << " " << method << ": " << run.reason;
     EXPECT_EQ(run.series.t, (std::vector<double>{0, 0.25, 0.5, 0.75, 1})) << method;
     EXPECT_EQ(run.energy_error_max, 0) << method;

@@ -12,6 +12,7 @@
 #include "equations/cartesian_pendulum.h"
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <filesystem>
@@ -59,14 +60,8 @@ TEST(Integrators, EveryNameRunsTheFormsItTakes) {
 std::string refusal(const Mechanism& mechanism, const std::string& form,
                     const std::string& integrator, const std::string& gauge = "none",
                     bool project = false, double step = 0) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.gauge = gauge;
+  RunRequest request = equations::stepped(form, integrator, gauge, step, 0.1, 1);
   request.settings.project = project;
-  request.settings.step = step;
-  request.settings.end_time = 0.1;
-  request.settings.samples = 1;
   try {
     const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
     return run.status;
@@ -126,13 +121,7 @@ TEST(Integrators, PropertiesFitEachOther) {
 TEST(Bdf, ProjectedKeepsTheLoopsShut) {
   const Mechanism mechanism(four_bar());
   for (const char* form : {"momentum", "acceleration"}) {
-    RunRequest request;
-    request.settings.form = form;
-    request.settings.integrator = "bdf";
-    request.settings.gauge = "leak";
-    request.settings.rtol = request.settings.atol = 1e-7;
-    request.settings.end_time = 5;
-    request.settings.samples = 100;
+    RunRequest request = equations::adaptive(form, "bdf", "leak", 1e-7, 5, 100);
     const RunResult free = run_form(mechanism, equations::start_of(mechanism), request);
     request.settings.project = true;
     const RunResult kept = run_form(mechanism, equations::start_of(mechanism), request);
@@ -363,13 +352,9 @@ TEST(GeneralisedAlpha, ConditionDoesNotGrowAsStepsShrink) {
 
 TEST(GeneralisedAlpha, SamplesBetweenStepsKeepTheLoopsShut) {
   const Mechanism mechanism(four_bar());
-  RunRequest request;
-  request.settings.form = "acceleration-index3";
-  request.settings.integrator = "generalised-alpha";
-  request.settings.step = 0.0101;
-  request.settings.end_time = 2;
-  request.settings.samples = 77;
-  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+  const RunResult run = run_form(
+      mechanism, equations::start_of(mechanism),
+      equations::stepped("acceleration-index3", "generalised-alpha", "none", 0.0101, 2, 77));
   ASSERT_EQ(run.status, "done") << run.reason;
   EXPECT_EQ(run.counters.steps, 199);
   EXPECT_LT(run.position_drift_max, 1e-9);
@@ -443,13 +428,9 @@ TEST(Rattle, KeepsBothConstraintsEverywhere) {
   for (const Mechanism* mechanism : {&planar, &redundant}) {
     double error[2];
     for (const int halvings : {0, 1}) {
-      RunRequest request;
-      request.settings.form = "momentum";
-      request.settings.integrator = "rattle";
-      request.settings.step = 0.0101 / (1 << halvings);
-      request.settings.end_time = 5;
-      request.settings.samples = 77;
-      const RunResult run = run_form(*mechanism, equations::start_of(*mechanism), request);
+      const RunResult run = run_form(
+          *mechanism, equations::start_of(*mechanism),
+          equations::stepped("momentum", "rattle", "none", 0.0101 / (1 << halvings), 5, 77));
       ASSERT_EQ(run.status, "done") << run.reason;
       EXPECT_EQ(run.settings.gauge, "reset");
       ASSERT_EQ(run.series.impulse.size(), 78u);

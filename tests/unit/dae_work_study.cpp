@@ -2,6 +2,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -136,12 +137,8 @@ TEST(OwnReference, AgreesWithThoseOfOthers) {
     const OwnReference own = own_reference(mechanism, start, end, 20);
     EXPECT_LT(own.accuracy, 1e-14) << name;
     Reference other(example(name, "reference.csv"));
-    RunRequest request;
-    request.settings.form = "acceleration";
+    RunRequest request = equations::adaptive("acceleration", "dop853", "none", 1e-13, end, 20);
     request.settings.project = mechanism.m() > 0;
-    request.settings.rtol = request.settings.atol = 1e-13;
-    request.settings.end_time = end;
-    request.settings.samples = 20;
     request.reference = &own.reference;
     const RunResult by_own = run_form(mechanism, start, request);
     other.bind(trajectory_columns(mechanism));
@@ -180,12 +177,8 @@ TEST(OwnReference, OfStiffMotionsIsMadeImplicitly) {
     EXPECT_TRUE(own.implicit) << scene.name;
     EXPECT_LT(own.accuracy, 1e-14) << scene.name;
     EXPECT_NE(in_words(own).find("Radau"), std::string::npos);
-    RunRequest request;
-    request.settings.form = "acceleration";
+    RunRequest request = equations::adaptive("acceleration", "dop853", "none", 1e-12, 1, 10);
     request.settings.project = mechanism.m() > 0;
-    request.settings.rtol = request.settings.atol = 1e-12;
-    request.settings.end_time = 1;
-    request.settings.samples = 10;
     request.reference = &own.reference;
     const RunResult tight = run_form(mechanism, start, request);
     EXPECT_EQ(tight.status, "done") << tight.reason;
@@ -346,15 +339,10 @@ TEST(WorkStudy, LeaksAtTheRateOfTheStart) {
 TEST(ObservedOrder, OfReactionsIsThatOfTheMethod) {
   const Mechanism mechanism(read_scene(example("four_bar", "scene.toml")));
   const auto run = [&](const std::string& integrator, double step, double tolerance) {
-    RunRequest request;
-    request.settings.integrator = integrator;
-    request.settings.gauge = "reset";
+    RunRequest request =
+        equations::kept(equations::adaptive("momentum", integrator, "reset", tolerance, 1, 20));
     request.settings.step = step;
-    request.settings.rtol = request.settings.atol = tolerance;
-    request.settings.end_time = 1;
-    request.settings.samples = 20;
     request.reactions = true;
-    request.keep_trajectory = true;
     return run_form(mechanism, equations::start_of(mechanism), request).trajectory;
   };
   const Trajectory exact = run("vern9", 0, 1e-13);
