@@ -3,6 +3,7 @@
 // that places every body from the ground and gathers the wrenches of all; and how many bodies are
 // placed. Dampers of balls alone are forces of these joints, and place none.
 
+#include "equations/examples.h"
 #include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -187,9 +188,7 @@ std::size_t placed(const Scene& scene) {
 
 TEST(ForcesBetweenBodies, PlaceWhatMovesAgainstEachOther) {
   // A biped's dampers on two balls of its legs.
-  EXPECT_EQ(placed(read_scene(std::string(MOMENTA_SOURCE_DIR) +
-                              "/examples/models/agility_cassie/cassie.xml")),
-            2u);
+  EXPECT_EQ(placed(equations::example("models/agility_cassie/cassie.xml")), 2u);
   // Two branches of three and four bodies on a stem of five.
   Scene scene;
   const auto add = [&](const std::string& parent, const std::string& child) {

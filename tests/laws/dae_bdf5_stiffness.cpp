@@ -2,6 +2,7 @@
 // oscillations of many periods.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -62,9 +63,6 @@ TEST(Bdf5, WhatFiltersLeaveOfAnError) {
     }
 }
 
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
-}
 JointSpec& rocker_of(Scene& scene) {
   for (JointSpec& joint : scene.joints)
     if (joint.name == "C") return joint;
@@ -80,7 +78,7 @@ RunResult run(const Scene& scene, const std::string& form, const std::string& in
 // tolerance, and steps that would resolve it are of the size of rounding.
 TEST(Bdf5, StartsBesideADamperOfAnySize) {
   for (const double damping : {1e5, 1e6, 1e7, 1e8, 1e9, 1e10}) {
-    Scene scene = four_bar();
+    Scene scene = equations::example("four_bar");
     rocker_of(scene).damping = damping;
     // Powers of such a damper at rates within the tolerance are none of the motion's.
     const Mechanism mechanism(scene);
@@ -108,7 +106,7 @@ TEST(Bdf5, StartsBesideADamperOfAnySize) {
 // The error in energy of an undamped oscillation does not grow with its periods: 10⁴ tolerances of
 // the energy exchanged, after 10⁵ steps as after 4·10⁵.
 TEST(Bdf5, EnergyOfAnOscillationOverManyPeriods) {
-  Scene scene = four_bar();
+  Scene scene = equations::example("four_bar");
   rocker_of(scene).stiffness = 1e6;
   rocker_of(scene).rest = 1.74;
   constexpr double tolerance = 1e-7;
@@ -125,7 +123,7 @@ TEST(Bdf5, EnergyOfAnOscillationOverManyPeriods) {
 TEST(Bdf5, StepsOfLargeMechanisms) {
   double steps = 0;
   for (const double factor : {1e2, 1e4, 1e6}) {
-    const Scene scene = driven_to(four_bar(), Extreme::size, factor);
+    const Scene scene = driven_to(equations::example("four_bar"), Extreme::size, factor);
     const RunResult r =
         run(scene, "momentum-index2", "bdf5", "reset", 1e-8, 10 * std::sqrt(factor));
     ASSERT_EQ(r.status, "done") << factor << ": " << r.reason;
@@ -141,8 +139,7 @@ TEST(Bdf5, StepsOfLargeMechanisms) {
 // Where loops bear little at the start, the rate found there is none to weigh by: that of Cassie,
 // at rest, is 4·10⁻⁵/s.
 TEST(Bdf5, AtRest) {
-  const Scene cassie = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                                  "examples/models/agility_cassie/cassie.xml");
+  const Scene cassie = equations::example("models/agility_cassie/cassie.xml");
   const RunResult r = run(cassie, "momentum-index2", "bdf5", "reset", 1e-8, 1);
   ASSERT_EQ(r.status, "done") << r.reason;
   EXPECT_LT(r.counters.steps, 200);

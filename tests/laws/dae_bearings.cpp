@@ -3,6 +3,7 @@
 // unique, and friction without a value, are refused.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/planar_pins.h"
@@ -35,8 +36,7 @@ BearingSpec bearing(double still, double moving, double radius, double length = 
 }
 
 Scene four_bar() {
-  Scene scene =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+  Scene scene = equations::example("four_bar");
   scene.joints[0].bearing = bearing(0.3, 0.2, 0.05);
   scene.joints[1].bearing = bearing(0.2, 0.2, 0.04);
   scene.joints[2].bearing = bearing(0.25, 0.1, 0.06);

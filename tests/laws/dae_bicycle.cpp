@@ -1,6 +1,7 @@
 // The benchmark bicycle (Meijaard, Papadopoulos, Ruina and Schwab, Proc. R. Soc. A 463, 2007): its
 // small motions about upright riding as published, and a run that follows them.
 
+#include "equations/examples.h"
 #include "equations/rolling.h"
 #include "equations/runs.h"
 
@@ -30,8 +31,7 @@ TEST(Bicycle, BicycleOfTheLiterature) {
   C << 0, 33.86641391492494, -0.85035641456978, 1.68540397397560;
   K0 << -80.95, -2.59951685249872, -2.59951685249872, -0.80329488458618;
   K2 << 0, 76.59734589573222, 0, 2.65431523794604;
-  const Scene scene =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/bicycle/scene.toml");
+  const Scene scene = equations::example("bicycle");
   for (int v = 0; v <= 10; ++v) {
     SCOPED_TRACE(v);
     Eigen::Matrix4d system;
@@ -73,8 +73,7 @@ TEST(Bicycle, BicycleOfTheLiterature) {
 
 /// A run that is disturbed decays as the eigenvalues say: capsize is the slowest at 5 m/s.
 TEST(Bicycle, DisturbedBicycleFollowsItsEigenvalues) {
-  Scene scene =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/bicycle/scene.toml");
+  Scene scene = equations::example("bicycle");
   const Start start = assemble(Mechanism(scene)).start;
   scene.held.clear();
   const Mechanism still(scene);

@@ -1,5 +1,6 @@
 // The order of the children of a body: with it fronts are as narrow as with the best of all orders.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 
@@ -100,8 +101,7 @@ TEST(ChildOrder, IsTheBestOfAll) {
 // Cassie's legs as they are written, and with the heel spring behind the foot, where it brings the
 // loop of the achilles rod before that of the plantar rod has closed.
 TEST(ChildOrder, OfCassieIsFoundAgain) {
-  const Scene given =
-      read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/models/agility_cassie/cassie.xml");
+  const Scene given = equations::example("models/agility_cassie/cassie.xml");
   Scene written = given;
   for (const char* side : {"left", "right"}) {
     const auto joint = [&](const char* name) {

@@ -2,6 +2,7 @@
 // wherever the loops are cut, however the scene is turned, in the plane or in space.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/recut.h"
 #include "equations/runs.h"
@@ -17,10 +18,7 @@ namespace momenta::dae_cut_anywhere {
 namespace {
 
 using namespace equations;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// How far each hinge has turned since the start, by name, at the end of a run.
 std::map<std::string, double> turns(const Scene& scene, Algebra algebra, double end) {

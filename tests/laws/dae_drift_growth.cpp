@@ -2,6 +2,7 @@
 // accelerations; not at all where positions are corrected. And the order of the method underneath.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +19,7 @@ namespace {
 using namespace equations;
 
 const Mechanism& four_bar() {
-  static const Mechanism mechanism(
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml"));
+  static const Mechanism mechanism(equations::example("four_bar"));
   return mechanism;
 }
 

@@ -3,6 +3,7 @@
 
 #include "equations/dense_lagrangian.h"
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
@@ -84,8 +85,7 @@ void expect_same_markers(const std::map<std::string, double>& found,
 
 /// A four-bar whose crank is driven through turns, cut at the crank: a driven hinge closes it.
 TEST(DrivenLoops, CrankOfAFourBarCutAtTheCrank) {
-  Scene scene =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+  Scene scene = equations::example("four_bar");
   DriveSpec d;
   d.kind = "polynomial";
   d.coefficients = {1.5707963267948966, 4, 0.5};  // one turn and a half in 2 s

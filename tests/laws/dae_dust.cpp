@@ -1,6 +1,7 @@
 // Rows of loops that hold nothing but rounding, and joints that hold next to no inertia: aligned
 // and tilted scenes move the same, by every solver.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
@@ -160,7 +161,7 @@ length = 2.5
 
 /// The four-bar with a coupler `factor` times as heavy.
 Scene with_coupler(double factor) {
-  Scene s = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+  Scene s = equations::example("four_bar");
   for (BodySpec& b : s.bodies)
     if (b.name == "coupler") {
       b.mass *= factor;

@@ -1,6 +1,7 @@
 // Inverse dynamics against forward dynamics, runs with drives, statics and formulas: the efforts
 // found, put back as joint forces, give the motion they were found for.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_tree.h"
@@ -21,11 +22,8 @@ namespace momenta::dae_effort {
 namespace {
 
 using Eigen::VectorXd;
+using equations::example;
 using std::numbers::pi;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
 
 DriveSpec harmonic(const std::string& joint, double offset, double amplitude, double frequency) {
   return equations::harmonic(joint, offset, amplitude, frequency);

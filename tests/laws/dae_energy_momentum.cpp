@@ -13,6 +13,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 
@@ -26,14 +27,9 @@ namespace {
 using namespace equations;
 using Eigen::VectorXd;
 
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "four_bar" /
-                    "scene.toml");
-}
-
 /// The four-bar on a table that turns about the vertical, off its axis.
 Scene turntable(double rate) {
-  Scene s = four_bar();
+  Scene s = equations::example("four_bar");
   for (JointSpec& j : s.joints)
     if (j.parent == "ground") {
       j.parent = "table";
@@ -111,7 +107,8 @@ TEST(EnergyMomentum, KeepsConstraintsAndEnergyAtRounding) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()));
   // The second has redundant equations, the last is an open chain.
   for (const Scene& scene :
-       {four_bar(), turned(four_bar(), turn), turntable(2), flying_rod(), pendulum(-0.5, 3)}) {
+       {equations::example("four_bar"), turned(equations::example("four_bar"), turn), turntable(2),
+        flying_rod(), pendulum(-0.5, 3)}) {
     const RunResult r = run(scene, 0.0101, 50);
     ASSERT_EQ(r.status, "done") << scene.name << ": " << r.reason;
     if (!scene.loops.empty()) {
@@ -179,7 +176,7 @@ TEST(EnergyMomentum, KeepsTheEnergyOfGyroscopicForces) {
 }
 
 TEST(EnergyMomentum, ReturnsToItsStart) {
-  for (const Scene& scene : {four_bar(), flying_rod()}) {
+  for (const Scene& scene : {equations::example("four_bar"), flying_rod()}) {
     Stepped c(scene);
     const auto start = c.y0();
     const auto turn = [&](std::vector<double> y) {
@@ -194,7 +191,7 @@ TEST(EnergyMomentum, ReturnsToItsStart) {
 }
 
 TEST(EnergyMomentum, WorkOfADamperToOrderTwo) {
-  Scene scene = four_bar();
+  Scene scene = equations::example("four_bar");
   for (JointSpec& j : scene.joints)
     if (j.name == "C") j.damping = 2;
   const auto off = [&](double h) { return run(scene, h, 4).energy_error_max; };
@@ -203,8 +200,7 @@ TEST(EnergyMomentum, WorkOfADamperToOrderTwo) {
 }
 
 TEST(EnergyMomentum, RefusesWhatIsPrescribed) {
-  const Scene driven =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "driven" / "scene.toml");
+  const Scene driven = equations::example("driven");
   try {
     run(driven, 0.01, 1);
     ADD_FAILURE();

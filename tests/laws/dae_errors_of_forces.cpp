@@ -3,6 +3,7 @@
 
 #include "equations/decompositions.h"
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/kkt_blocks.h"
 #include "equations/random_tree.h"
 #include "equations/runs.h"
@@ -28,10 +29,7 @@ namespace {
 using namespace equations;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
-}
+using equations::example;
 
 OwnReference reference_of(const Mechanism& mechanism, double end, int count) {
   return own_reference(mechanism, assemble(mechanism).start, end, count, {}, true);

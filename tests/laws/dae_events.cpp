@@ -16,6 +16,7 @@
 #include <numbers>
 #include <random>
 
+#include "equations/examples.h"
 #include "equations/parts.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -23,6 +24,7 @@
 namespace momenta::dae_events {
 namespace {
 
+using equations::example;
 using std::numbers::pi;
 using Number = std::function<double(double)>;
 
@@ -191,10 +193,6 @@ body = "a"
 point = [0, 0, 1]
 )" + events,
                      "thrown.toml");
-}
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
 }
 
 RunRequest request_of(const std::string& form, const std::string& integrator, double end,

@@ -3,6 +3,7 @@
 // at another speed.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
 #include "equations/runs.h"
@@ -23,9 +24,7 @@
 namespace momenta::dae_extremes {
 namespace {
 
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
-}
+using equations::example;
 
 /// Everything a scene can have that has a unit, in one mechanism: springs, dampers, drives of
 /// lengths and angles, a coupler between the two, a wrench, a moving point.

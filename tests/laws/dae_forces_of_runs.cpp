@@ -3,6 +3,7 @@
 // every form, λ converges, and what is not unique is left out.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
@@ -30,10 +31,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
-}
+using equations::example;
 
 VectorXd any(RandomTree& random, int size, double reach) {
   VectorXd x(size);

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/exact_jacobian.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
@@ -19,10 +20,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// Largest difference of q over the samples, relative to 1 + |q|.
 double apart(const RunResult& a, const RunResult& b, int nq) {

@@ -3,6 +3,7 @@
 // are cut and bodies folded, many states as one, quad precision, small motions, the index.
 
 #include "equations/exact_jacobian.h"
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
@@ -28,10 +29,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 ForceSpec by_law(const std::string& kind, const std::string& law) {
   ForceSpec f;

@@ -3,6 +3,7 @@
 // its own file promises.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_tree.h"
@@ -21,10 +22,8 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
+using equations::example;
 
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
 /// The crank-rocker with its crank turning: 7 rad/s at the start, three turns in two seconds.
 Scene turning_four_bar() {
   Scene scene = example("four_bar");

@@ -13,6 +13,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
@@ -26,10 +27,7 @@ namespace momenta::dae_gauss_newton {
 namespace {
 
 using namespace equations;
-
-Scene example(const char* name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 enum class By { substitution, dense, local };
 

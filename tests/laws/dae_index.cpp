@@ -4,6 +4,7 @@
 // equations against differences of its residual along a curve.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
@@ -26,7 +27,7 @@ namespace {
 using namespace equations;
 
 Scene scene_of(const std::string& file) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / file);
+  return equations::example(file);
 }
 
 /// The index that a form's name promises.

@@ -1,6 +1,7 @@
 // A run that cuts other joints than the scene reports the scene as it is written: every column, in
 // every form, as the run that cuts what the scene cuts.
 
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
@@ -24,10 +25,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// A scene of hinges, with other joints cut: {made a loop, made a joint}, one after the other.
 Scene written_otherwise(Scene scene,

@@ -1,6 +1,7 @@
 // Poses followed along their curve against trigonometry, against assembly pose by pose, and against
 // each other.
 
+#include "equations/examples.h"
 #include "equations/parts.h"
 #include "equations/swept_four_bar.h"
 
@@ -20,12 +21,8 @@ namespace momenta::dae_kinematics {
 namespace {
 
 using Eigen::VectorXd;
-using equations::FourBar, equations::moved;
+using equations::FourBar, equations::moved, equations::example;
 using std::numbers::pi;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
 
 /// Rows stand in the order in which the curve passes them: between dead points one way.
 void expect_in_order(const MoveResult& r) {
@@ -459,8 +456,7 @@ TEST(Kinematics, WhatIsLeftFreeIsHeldOrNamed) {
 // A four-bar with a driven crank carries a pendulum, which alone is free: the hinges of the loop
 // stay.
 TEST(Kinematics, WhatTheLoopsHoldIsNotSwept) {
-  const Scene driven =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/driven/scene.toml");
+  const Scene driven = example("driven");
   try {
     moved(driven, "A");
     ADD_FAILURE() << "swept";

@@ -2,6 +2,7 @@
 // the same coordinates, in every form; power; derivatives against differences in quad precision;
 // the literature's numbers.
 
+#include "equations/examples.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 
@@ -26,10 +27,8 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using equations::example;
 
-Scene example(const std::string& path) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / path);
-}
 Scene typed(const std::string& text) {
   return parse_scene(text, "typed.toml");
 }

@@ -3,6 +3,7 @@
 
 #include "equations/dense_lagrangian.h"
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/quad_linear_twin.h"
@@ -27,6 +28,7 @@ using namespace equations;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using equations::example;
 using reading::digits;
 
 /// 0 at the start; later f, ḟ and f̈ all move something.
@@ -185,10 +187,6 @@ TEST(LinearLoopDrives, AreTheDerivativesByWhatIsPrescribed) {
     expect_derivatives(
         closed_arm(c.kind, c.coordinates, c.origins), 0.1, c.drives,
         std::to_string(static_cast<int>(c.kind)) + " " + std::to_string(c.coordinates));
-}
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
 }
 
 /// A four-bar that shakes a pendulum on its coupler, its crank driven by `law`, which starts at

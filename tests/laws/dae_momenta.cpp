@@ -2,6 +2,7 @@
 // of what the energy does not hold.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -19,10 +20,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// The momentum form of a mechanism, with states written and read as q, p.
 struct Moving {

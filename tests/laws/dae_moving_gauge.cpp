@@ -2,6 +2,7 @@
 // of changing length, the same motion in whatever gauge the past is told, what no leak allows.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -21,10 +22,7 @@ namespace momenta::dae_moving_gauge {
 namespace {
 
 using namespace equations;
-
-Scene example(const char* name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 // ω through values of a polynomial is it, with its rate, and its highest difference is its leading
 // coefficient.
@@ -258,8 +256,7 @@ TEST(Bdf5, EveryMatrixAndForm) {
 // Redundant rows are softened about the multipliers of the start, so that it is consistent: without
 // that a row is off by ε σ₀, and a step of h answers by u ~ ε σ₀/h.
 TEST(DaeForms, SoftenedRowsHoldAtTheStart) {
-  Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                           "examples/models/agility_cassie/cassie.xml");
+  Scene scene = example("models/agility_cassie/cassie.xml");
   double rate = -0.5;
   for (JointSpec& joint : scene.joints)
     if (joint.kind == JointKind::revolute) joint.velocity = {rate = -rate};

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "equations/examples.h"
 #include "equations/tolerance.h"
 
 namespace momenta::dae_order_explicit {
@@ -98,8 +99,7 @@ TEST(ExplicitOrder, DenseOutput) {
 
 /// The four-bar after 2 s: its state with fixed steps, or, with step 0, to a tolerance of 1e-14.
 std::vector<double> four_bar(const std::string& method, double step) {
-  const Mechanism mechanism(read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" /
-                                       "four_bar" / "scene.toml"));
+  const Mechanism mechanism(equations::example("four_bar"));
   const Assembly assembly = assemble(mechanism);
   FormOptions corrected;
   corrected.gauge = parse_gauge("reset");

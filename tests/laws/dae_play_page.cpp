@@ -2,6 +2,7 @@
 // the library: same form, same method, same step, on both its mechanisms. Its scripts are run by
 // node, or by Chromium; skipped where neither is installed.
 
+#include "equations/examples.h"
 #include "equations/output_of.h"
 #include "equations/tolerance.h"
 
@@ -135,7 +136,7 @@ TEST(PlayPage, HasTheRunsOfTheLibrary) {
   if (page.is_null()) GTEST_SKIP() << "neither node nor chromium is installed";
   for (const auto& [name, scene] : {std::pair{"pendulum", "pendulum/cartesian.toml"},
                                     std::pair{"four-bar", "four_bar/scene.toml"}}) {
-    const Mechanism mechanism(read_scene(fs::path(MOMENTA_SOURCE_DIR) / "examples" / scene));
+    const Mechanism mechanism(equations::example(scene));
     for (const Method& method : methods) {
       const auto rows = by_library(mechanism, method);
       const json& found = page[name][method.of_page];

@@ -3,6 +3,7 @@
 // oscillations of many periods.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 
@@ -17,10 +18,6 @@
 
 namespace momenta::dae_radau5_gauge {
 namespace {
-
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
-}
 
 /// q at the end, by fixed steps.
 std::vector<double> by_steps(const Mechanism& mechanism, const std::string& form_name,
@@ -40,7 +37,7 @@ std::vector<double> by_steps(const Mechanism& mechanism, const std::string& form
 // The shift of y, y' and of the stages foreseen changes no step: of the order of the method in
 // every form with impulses, and not in the gauge in which σ grows.
 TEST(Radau5, OrderWithReset) {
-  const Mechanism mechanism(four_bar());
+  const Mechanism mechanism(equations::example("four_bar"));
   constexpr double end = 0.6;
   const auto ode = make_form("momentum", mechanism, {}, equations::start_of(mechanism));
   IntegrationOptions tight;
@@ -73,7 +70,7 @@ RunResult run(const Scene& scene, double end) {
 TEST(Radau5, StepsAtAnySpeed) {
   double steps = 0;
   for (const double rate : {1e3, 1e4, 1e5, 1e6}) {
-    Scene scene = four_bar();
+    Scene scene = equations::example("four_bar");
     for (JointSpec& joint : scene.joints)
       if (joint.name == "O") joint.velocity = {rate};
     const RunResult r = run(scene, 100 / rate);
@@ -90,7 +87,7 @@ TEST(Radau5, StepsAtAnySpeed) {
 // Rounding of q opens the loop by ε |q|; the impulse that closes it is that of the heavy body.
 TEST(Radau5, HeavyCoupler) {
   for (const double factor : {1e6, 1e9, 1e12}) {
-    Scene scene = four_bar();
+    Scene scene = equations::example("four_bar");
     for (BodySpec& body : scene.bodies)
       if (body.name == "coupler") body.mass *= factor, body.inertia *= factor;
     const RunResult r = run(scene, 10);
@@ -104,7 +101,7 @@ TEST(Radau5, HeavyCoupler) {
 // four times as large after four times as long, unless a step's share of the tolerance shrinks as
 // their number grows (local_newton.h).
 TEST(Radau5, EnergyOfAnOscillationOverManyPeriods) {
-  Scene scene = four_bar();
+  Scene scene = equations::example("four_bar");
   for (JointSpec& joint : scene.joints)
     if (joint.name == "C") joint.stiffness = 1e6, joint.rest = 1.74;
   const auto after = [&](double end) {

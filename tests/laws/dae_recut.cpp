@@ -1,5 +1,6 @@
 // Other joints cut, the same mechanism: every body where it was, as fast, and accelerated alike.
 
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/point_motions.h"
@@ -26,10 +27,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// Places and velocities of the markers at the assembled start, and a little later along the
 /// accelerations found there.

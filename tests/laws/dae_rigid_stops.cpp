@@ -17,6 +17,7 @@
 #include <numbers>
 #include <random>
 
+#include "equations/examples.h"
 #include "equations/kkt_blocks.h"
 #include "equations/runs.h"
 
@@ -129,8 +130,7 @@ TEST(RigidStops, LetGoWhereTheyWouldPull) {
 }
 
 Scene four_bar(const char* joint, double restitution, double low, double high) {
-  Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "four_bar" /
-                           "scene.toml");
+  Scene scene = equations::example("four_bar");
   for (JointSpec& j : scene.joints)
     if (j.name == joint) j.limits = {low, high}, j.restitution = restitution;
   return scene;

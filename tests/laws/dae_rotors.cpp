@@ -3,6 +3,7 @@
 // as a body behind a coupler; and joints that have no other inertia.
 
 #include "equations/descriptions.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -102,8 +103,7 @@ TEST(Rotors, AreAllTheInertiaThereIs) {
 /// A leg linkage on a moving base has rows that depend on others at every pose: the sweeps fade
 /// them, and it is they that carry its loops.
 TEST(Rotors, AndDependentRowsLeaveCassieToTheSweeps) {
-  const Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                                 "examples/models/agility_cassie/cassie.xml");
+  const Scene scene = equations::example("models/agility_cassie/cassie.xml");
   EXPECT_EQ(scene.bodies.size(), 25U);  // no body stands for a rotor
   const Mechanism mechanism(scene);
   EXPECT_EQ(mechanism.solver().kkt(), KktChoice::sweeps);

@@ -1,6 +1,7 @@
 // SDF with loops: a four-bar of joints alone has M and accelerations of the same in TOML, wherever
 // its joints let the tree be cut; gears and mimics tie angles as couplers do.
 
+#include "equations/examples.h"
 #include "equations/scene_folder.h"
 
 #include <gtest/gtest.h>
@@ -74,8 +75,7 @@ class SdfLoops : public SceneFolder {
 };
 
 TEST_F(SdfLoops, FourBarAsInToml) {
-  const Mechanism toml(
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml"));
+  const Mechanism toml(equations::example("four_bar"));
   const Assembly closed = assemble(toml);
   const VectorXd q = closed.start.q;  // of O, A, C
   // the one motion that the loop allows, at 2 rad/s of the crank

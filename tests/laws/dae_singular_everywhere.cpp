@@ -2,6 +2,7 @@
 // tilted scenes; each bound holds for the worst of them.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 
@@ -18,11 +19,10 @@
 namespace momenta::dae_singular_everywhere {
 namespace {
 
+using equations::example;
+
 constexpr double end_of_runs = 10;  // [s]
 
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
 /// In the plane as it is, turned in it, tilted out of it.
 Scene posed(const Scene& scene, int pose) {
   const Eigen::Vector3d axis = pose == 1 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(1, 2, 3);

@@ -4,6 +4,7 @@
 // quantiles are bound tightly, the worst by that law.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -107,8 +108,7 @@ TEST(SingularRuns, RowOfFourBarsThroughItsFlatPoses) {
 }
 
 TEST(SingularRuns, EqualLinkSliderCrankAtItsBifurcation) {
-  const Scene scene =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/slider_crank/scene.toml");
+  const Scene scene = equations::example("slider_crank");
   const double exact = 20.4724231148819971;  // the last line of its reference.csv
   for (const double angle : {0.0, 0.7}) {
     const Mechanism mechanism(turned_by(scene, angle));

@@ -3,6 +3,7 @@
 
 #include "equations/differenced_motions.h"
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/recut.h"
 #include "equations/runs.h"
@@ -27,10 +28,7 @@ using namespace equations;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
-}
+using equations::example;
 
 ModesResult modes_of(const Scene& scene, ModesRequest request = {},
                      Algebra algebra = Algebra::automatic) {

@@ -2,6 +2,7 @@
 // died out, and nowhere else.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -79,7 +80,7 @@ TEST(Stiffness, IsNotSeenInTheExamples) {
 
 /// The crank-rocker of the examples with a damped rod on its crank.
 Scene four_bar_with_finger() {
-  Scene s = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+  Scene s = equations::example("four_bar");
   s.bodies.push_back(rod("finger"));
   s.joints.push_back(hinge("F", s.joints.front().child, "finger", {0.2, 0, 0}, 0.2));
   s.joints.back().damping = 3000;

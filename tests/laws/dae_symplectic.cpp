@@ -12,6 +12,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -25,11 +26,6 @@ namespace {
 
 using namespace equations;
 using Eigen::MatrixXd;
-
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "four_bar" /
-                    "scene.toml");
-}
 
 /// `lift` from hanging at rest [rad]: small, and the motion is regular.
 Scene double_pendulum(double lift) {
@@ -91,7 +87,7 @@ double defect(Canonical& c, const std::string& method, double h) {
 }
 
 TEST(Symplectic, GaussWithAndWithoutLoops) {
-  for (const Scene& scene : {double_pendulum(2), four_bar()}) {
+  for (const Scene& scene : {double_pendulum(2), equations::example("four_bar")}) {
     Canonical c(scene, "none");
     const double h = 0.05;
     // d² of the difference, ε/d of rounding
@@ -104,7 +100,7 @@ TEST(Symplectic, GaussWithAndWithoutLoops) {
 /// A state of the constraint manifold of the four-bar, one degree of freedom: at crank angle and
 /// rate, p = M u.
 std::vector<double> four_bar_state(const std::vector<double>& near, double angle, double rate) {
-  Scene scene = four_bar();
+  Scene scene = equations::example("four_bar");
   const Mechanism shape(scene);
   for (std::size_t i = 0; i < scene.joints.size(); ++i) scene.joints[i].position = {near[i]};
   scene.joints[0].position = {angle};
@@ -116,7 +112,7 @@ std::vector<double> four_bar_state(const std::vector<double>& near, double angle
 }
 
 TEST(Symplectic, RattleOnTheConstraintManifold) {
-  Canonical c(four_bar(), "reset");
+  Canonical c(equations::example("four_bar"), "reset");
   const double h = 0.02, d = 1e-5;
   const auto middle = c.steps("rattle", c.form->initial(c.start), h, 20);
   Snapshot now;
@@ -142,7 +138,7 @@ TEST(Symplectic, RattleOnTheConstraintManifold) {
 }
 
 double far_from_start(const std::string& gauge, const std::string& method, int count) {
-  Canonical c(four_bar(), gauge);
+  Canonical c(equations::example("four_bar"), gauge);
   const double h = 0.02;
   const auto start = c.form->initial(c.start);
   const auto turn = [&](std::vector<double> y) {
@@ -186,17 +182,19 @@ std::pair<double, double> trend(const Scene& scene, const std::string& integrato
 
 TEST(EnergyOverLongTimes, HasNoTrendWithGauss) {
   for (const auto& [method, step] : {std::pair{"gauss4", 0.02}, std::pair{"gauss6", 0.04}}) {
-    const auto [slope, largest] = trend(four_bar(), method, "flip", step, 1600);
+    const auto [slope, largest] = trend(equations::example("four_bar"), method, "flip", step, 1600);
     EXPECT_LT(std::abs(slope), 0.02 * largest) << method;
     EXPECT_LT(largest, 1e-3) << method;
   }
-  const auto [second, second_largest] = trend(four_bar(), "rattle", "reset", 0.005, 100);
+  const auto [second, second_largest] =
+      trend(equations::example("four_bar"), "rattle", "reset", 0.005, 100);
   EXPECT_LT(std::abs(second), 0.02 * second_largest);
   EXPECT_LT(second_largest, 0.1);
-  const auto [rk4, rk4_largest] = trend(four_bar(), "rk4", "flip", 0.02, 400);
+  const auto [rk4, rk4_largest] = trend(equations::example("four_bar"), "rk4", "flip", 0.02, 400);
   EXPECT_GT(std::abs(rk4), 0.5 * rk4_largest);
   EXPECT_GT(rk4_largest, 0.1);
-  const auto [reset, reset_largest] = trend(four_bar(), "gauss4", "reset", 0.02, 400);
+  const auto [reset, reset_largest] =
+      trend(equations::example("four_bar"), "gauss4", "reset", 0.02, 400);
   EXPECT_GT(std::abs(reset), 0.2 * reset_largest);
 
   const auto [open, open_largest] = trend(double_pendulum(0.7), "gauss4", "none", 0.05, 400);

@@ -11,6 +11,7 @@
 // Here the child is one free body, whose C is read off its quaternion, or the last one of a chain
 // of hinges, whose C is the product of their rotations.
 
+#include "equations/examples.h"
 #include "equations/parts.h"
 #include "equations/random_tree.h"
 #include "equations/runs.h"
@@ -226,8 +227,7 @@ TEST(TurnedLoops, AxesOfChainsOfHingesAreInOneFromAnyStart) {
 /// The delta robot of the models is drawn so that all three of its welds close half a turn off. Its
 /// run by momentum-index2 then did not come past t = 0.02 s.
 TEST(TurnedLoops, TheDeltaRobotIsLedBackAndRuns) {
-  const Mechanism mechanism(read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                                       "examples/models/epr_robot_delta/robot.urdf"));
+  const Mechanism mechanism(equations::example("models/epr_robot_delta/robot.urdf"));
   const Assembly a = assemble(mechanism);
   EXPECT_TRUE(turned_loops(mechanism, 0, a.start.q).empty());
   EXPECT_NE(a.branch.find("turned by 180°, and it was led back"), std::string::npos) << a.branch;
@@ -275,8 +275,7 @@ TEST(TurnedLoops, DisplacementOfMassIsThatOfItsPoints) {
 /// loop's bodies exchanged, its frame turned, the whole turned in the ground, the delta robot comes
 /// out the same, every point of its mass.
 TEST(TurnedLoops, TheDeltaRobotIsTheSameHoweverWritten) {
-  const Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                                 "examples/models/epr_robot_delta/robot.urdf");
+  const Scene scene = equations::example("models/epr_robot_delta/robot.urdf");
   const Mechanism own(scene);
   const VectorXd q = assemble(own, Assembled::rates).start.q;
   const double size = displacement_of_mass(own, 0, q, own.tree().q0);

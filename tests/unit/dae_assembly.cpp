@@ -1,5 +1,6 @@
 // A consistent start from a guess: positions close, held joints stay, what cannot close is said.
 
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
@@ -23,10 +24,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 std::string complaint(const Scene& scene) {
   const Mechanism mechanism(scene);
@@ -163,8 +161,7 @@ TEST(Assembly, SmallGapsOfContradictingLoopsEndAtTheLeastSquares) {
     for (unsigned seed = 0; seed < 6; ++seed) {
       SCOPED_TRACE(testing::Message() << angle << ", " << seed);
       RandomTree random(seed);
-      Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                               "examples/extremes/three_cranks.toml");
+      Scene scene = example("extremes/three_cranks.toml");
       for (JointSpec& j : scene.joints) j.position = {std::copysign(angle, j.position[0])};
       for (LoopSpec& l : scene.loops) l.origin_child[0] += 2e-9 * random.uniform(-1, 1);
       const Mechanism mechanism(scene);
@@ -445,14 +442,11 @@ Scene on_a_table(Scene scene) {
 // loops, in a plane and in space. Rounding moves the pose of redundant loops by up to its root: on
 // the way their pivots are as small as the gap.
 TEST(Assembly, DoesNotDependOnWhichEndOfALoopIsItsParent) {
-  const std::vector<std::pair<Scene, int>> scenes{
-      {read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                  "examples/models/epr_robot_delta/robot.urdf"),
-       1},
-      {example("andrews"), 4},
-      {example("four_bar"), 4},
-      {on_a_table(bricard()), 4},
-      {on_a_table(platform(6)), 4}};
+  const std::vector<std::pair<Scene, int>> scenes{{example("models/epr_robot_delta/robot.urdf"), 1},
+                                                  {example("andrews"), 4},
+                                                  {example("four_bar"), 4},
+                                                  {on_a_table(bricard()), 4},
+                                                  {on_a_table(platform(6)), 4}};
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
   double moved = 0;

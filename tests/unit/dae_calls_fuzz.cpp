@@ -3,6 +3,7 @@
 // makes n times as many.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/wild.h"
 
 #include <gtest/gtest.h>
@@ -22,10 +23,8 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
+using equations::example;
 
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
 int times_more() {
   const char* asked = std::getenv("MOMENTA_CALLS");  // NOLINT: tests have one thread
   return asked ? std::atoi(asked) : 1;

@@ -3,6 +3,7 @@
 // is that of the whole matrix. Cycles that leave a plane keep all rows.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
@@ -20,10 +21,6 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
-}
 
 /// u and σ of (7) from momenta of the given rates, and the rows that faded.
 struct Solved {
@@ -43,8 +40,9 @@ Solved solve(const Mechanism& mechanism, const VectorXd& q, const VectorXd& p,
 }
 
 TEST(CarriedRows, OfAPlanarCycleInSpaceAreTwo) {
-  const Mechanism swept(four_bar(), {.algebra = Algebra::spatial, .kkt = KktChoice::sweeps}),
-      dense(four_bar(), {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
+  const Mechanism swept(equations::example("four_bar"),
+                        {.algebra = Algebra::spatial, .kkt = KktChoice::sweeps}),
+      dense(equations::example("four_bar"), {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
   ASSERT_EQ(swept.m(), 5);
   EXPECT_LE(swept.solver().sweeps()->slots(), 4);
   const VectorXd q = start_of(swept).q;
@@ -64,7 +62,7 @@ TEST(CarriedRows, OfAPlanarCycleInSpaceAreTwo) {
 TEST(CarriedRows, OfABallAreTwoInAnyAxes) {
   for (const Eigen::Vector3d& turn :
        {Eigen::Vector3d(0, 0, 0.4), Eigen::Vector3d(0.7, -0.3, 0.2), Eigen::Vector3d(-2, 1, 1.5)}) {
-    Scene scene = four_bar();
+    Scene scene = equations::example("four_bar");
     scene.loops[0].kind = LoopKind::spherical;
     scene.loops[0].axis.setZero();
     scene.loops[0].rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized());
@@ -89,7 +87,7 @@ TEST(CarriedRows, OfABallAreTwoInAnyAxes) {
 /// On a body that flies, its crank free or driven: the cycle's first body need not be the ground.
 TEST(CarriedRows, OfALinkageThatFliesAreTwo) {
   for (const bool driven : {false, true}) {
-    Scene scene = four_bar();
+    Scene scene = equations::example("four_bar");
     BodySpec base;
     base.name = "base";
     base.mass = 5;

@@ -2,6 +2,7 @@
 // joints; many states are as one; what is wrong is said.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
@@ -18,10 +19,7 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 VectorXd any(RandomTree& random, int size) {
   VectorXd x(size);

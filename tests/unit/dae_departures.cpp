@@ -1,6 +1,7 @@
 // Verdicts on runs whose loops stay closed: the energy turned over against what closed forms give,
 // the balance and the rates of loops against it, and runs that are honest at any accuracy.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 
@@ -70,8 +71,7 @@ RunResult with_error(double error) {
 }
 
 TEST(Departures, JudgesTheBalanceByWhatWasTurnedOver) {
-  const Mechanism mechanism(
-      read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml"));
+  const Mechanism mechanism(equations::example("four_bar"));
   const auto judged = [&](double error, double turned_over, double between = 0) {
     RunResult r = with_error(error);
     Departures departures(mechanism, r.settings, 2);
@@ -112,8 +112,7 @@ TEST(Departures, OfATreeFewSamplesJudgeNoEnergy) {
 }
 
 TEST(Departures, JudgesTheRatesOfLoopsByTheFastestJoint) {
-  const Mechanism mechanism(
-      read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml"));
+  const Mechanism mechanism(equations::example("four_bar"));
   const auto judged = [&](double opening) {
     RunResult r = with_error(0);
     Departures departures(mechanism, r.settings, 2);
@@ -196,8 +195,7 @@ TEST(Departures, BranchesThatDifferAreSaid) {
 /// The end is no scale of the motion: a run to a time that no run reaches takes the steps of one to
 /// a time that it does.
 TEST(Departures, NoStepIsTiedToAFarEnd) {
-  const Mechanism mechanism(
-      read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml"));
+  const Mechanism mechanism(equations::example("four_bar"));
   const Start start = assemble(mechanism).start;
   for (const auto& [form, integrator] : {std::pair{"momentum", "dop853"},
                                          {"acceleration", "vern9"},

@@ -1,6 +1,7 @@
 // Drifts of lengths and of angles are told apart: against Φ and Φ̇ of every sample, row by row; and
 // what tables, files and sentences call them.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -24,9 +25,7 @@
 namespace momenta::dae_drift_units {
 namespace {
 
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// Two rods whose angles a coupler ties, one to −0.5, falling from rest.
 Scene coupled_rods() {

@@ -2,6 +2,7 @@
 // gives, to the last bit: samples, measures, counters.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
@@ -19,10 +20,7 @@ namespace momenta::dae_going_on {
 namespace {
 
 using namespace equations;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 /// All that a run tells but its times, and its rows.
 struct Told {

@@ -2,6 +2,7 @@
 // its entries grow like the mechanism, however deep the tree is.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
@@ -77,8 +78,7 @@ void expect_same_matrix(const Mechanism& mechanism, const Start& start, unsigned
 
 TEST(LocalJacobian, IsTheMatrixOfDualNumbers) {
   for (const char* name : {"four_bar", "andrews", "driven", "spatial_slider_crank"}) {
-    const Mechanism mechanism(
-        read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml"));
+    const Mechanism mechanism(equations::example(name));
     expect_same_matrix(mechanism, equations::start_of(mechanism), 1);
   }
   for (const Scene& scene :

@@ -1,6 +1,7 @@
 // One verdict on the rank of the loop equations, whoever asks and however the mechanism is written;
 // and loops that no pose closes because a file has rounded their numbers.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
@@ -30,8 +31,7 @@ using namespace equations;
 using Eigen::Vector3d;
 
 Scene three_cranks() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
-                    "examples/extremes/three_cranks.toml");
+  return equations::example("extremes/three_cranks.toml");
 }
 
 /// The numbers of joints and loops, off by up to `relative` of themselves and of one length.

@@ -2,6 +2,7 @@
 // there all the same. Against the null space of M and Φ_q, and against the same mechanism without
 // those joints.
 
+#include "equations/examples.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
@@ -29,10 +30,6 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
-}
 
 /// A body without mass on a joint of its own.
 void add_finger(Scene& scene, const std::string& name, const std::string& parent,
@@ -233,7 +230,7 @@ TEST(MasslessJoints, AThinRodIsTakenForOneAboutAnyAxis) {
               "rotor's inertia, or a fixed joint");
     EXPECT_NE(refusal(rod_about(axis, JointKind::spherical)).find("joint 'spin' has no inertia"),
               std::string::npos);
-    Scene loops = four_bar();  // beside loops, by every matrix
+    Scene loops = equations::example("four_bar");  // beside loops, by every matrix
     const Scene rod = rod_about(axis, JointKind::revolute);
     loops.bodies.push_back(rod.bodies.back());
     loops.joints.push_back(rod.joints.back());
@@ -296,7 +293,7 @@ TEST(MasslessJoints, FormulasToo) {
 }
 
 TEST(MasslessJoints, LoopsElsewhereDoNotHideThem) {
-  Scene scene = four_bar();
+  Scene scene = equations::example("four_bar");
   scene.loops[0].axis = Vector3d::UnitZ();
   add_finger(scene, "index", "rocker");
   add_finger(scene, "thumb", "crank", Vector3d::UnitX());
@@ -346,7 +343,7 @@ TEST(MasslessJoints, TheOthersAccelerateAllTheSame) {
   add_finger(more, "a", "arm", Vector3d::UnitX());
   add_finger(more, "b", "a link", Vector3d::UnitY(), JointKind::prismatic);
   expect_the_rest(more, chain);
-  Scene loops = four_bar();
+  Scene loops = equations::example("four_bar");
   more = loops;
   add_finger(more, "a", "rocker");
   add_finger(more, "b", "a link", Vector3d::UnitX(), JointKind::prismatic);
@@ -368,7 +365,7 @@ TEST(MasslessJoints, AForceOnWhatHasNoInertiaLeavesNothing) {
 
 /// A coupler without mass between crank and rocker: M is singular, (3) is not.
 TEST(MasslessJoints, WhatLoopsHoldIsEvaluatedAsItRuns) {
-  Scene scene = four_bar();
+  Scene scene = equations::example("four_bar");
   scene.bodies[1].mass = 0;
   scene.bodies[1].inertia.setZero();
   const Mechanism mechanism(scene);

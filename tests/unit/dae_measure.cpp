@@ -11,6 +11,7 @@
 #include <fstream>
 #include <random>
 
+#include "equations/examples.h"
 #include "equations/runs.h"
 
 namespace momenta::dae_measure {
@@ -74,7 +75,7 @@ TEST(Growth, IsNotThatOfRounding) {
 }
 
 TEST(Growth, OfLoopsFarFromTheGroundIsNotThatOfRounding) {
-  Scene scene = read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml");
+  Scene scene = equations::example("four_bar");
   for (JointSpec& j : scene.joints)
     if (j.parent == "ground") j.origin_parent.x() += 3000;
   const Mechanism mechanism(scene);

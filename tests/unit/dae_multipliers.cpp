@@ -2,6 +2,7 @@
 // singular values; at poses, and along runs, where trajectories, summaries and charts tell.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_loops.h"
@@ -26,10 +27,7 @@ namespace momenta::dae_multipliers {
 namespace {
 
 using namespace equations;
-
-Scene example(const std::string& name) {
-  return read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name);
-}
+using equations::example;
 
 /// Slow twin: rows in which a force that moves nothing takes part.
 std::vector<bool> unique_by_singular_values(const Mechanism& mechanism, double t,

@@ -15,6 +15,7 @@
 #include <numbers>
 #include <random>
 
+#include "equations/examples.h"
 #include "equations/runs.h"
 
 namespace momenta::dae_picture {
@@ -24,10 +25,7 @@ namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-Scene example(const std::string& name) {
-  return read_scene(fs::path(MOMENTA_SOURCE_DIR) / "examples" / name);
-}
+using equations::example;
 
 /// One scene with every kind of joint, one on another.
 Scene every_joint() {

@@ -2,6 +2,7 @@
 // unique.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/tolerance.h"
 
@@ -17,10 +18,8 @@ namespace momenta::dae_rank {
 namespace {
 
 using namespace equations;
+using equations::example;
 
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
-}
 RankReport report_of(const Mechanism& mechanism) {
   return rank_report(mechanism, equations::start_of(mechanism));
 }

@@ -2,6 +2,7 @@
 // gives, and no run of another study, scene or build gets in.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/output_of.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ class Resume : public testing::Test {
                 ("momenta_resume_" +
                  std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
                  std::to_string(getpid()))),
-        mechanism_(read_scene(fs::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml")),
+        mechanism_(equations::example("four_bar")),
         start_(equations::start_of(mechanism_)) {
     fs::remove_all(folder_);
   }

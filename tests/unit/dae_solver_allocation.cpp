@@ -4,6 +4,7 @@
 // and skips, as it does where a sanitizer owns the heap.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -129,8 +130,7 @@ TEST(Allocation, NoneInStepsOfForms) {
   touch_heap();
   if (allocations == before) GTEST_SKIP() << "another operator new is linked in";
 
-  const Mechanism mechanism(
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml"));
+  const Mechanism mechanism(equations::example("four_bar"));
   const Start start = equations::start_of(mechanism);
   for (const std::string& name : form_names()) {
     if (is_dae_form(name)) continue;
@@ -161,8 +161,7 @@ TEST(Allocation, NoneInStepsOnDaes) {
   touch_heap();
   if (allocations == before) GTEST_SKIP() << "another operator new is linked in";
 
-  const Mechanism mechanism(
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml"));
+  const Mechanism mechanism(equations::example("four_bar"));
   const Start start = equations::start_of(mechanism);
   const struct {
     const char *method, *form, *gauge;

@@ -11,6 +11,7 @@
 
 #include "equations/cartesian_pendulum.h"
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
@@ -23,10 +24,6 @@ namespace {
 
 using namespace equations;
 
-Scene four_bar() {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "four_bar" /
-                    "scene.toml");
-}
 bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
@@ -37,7 +34,7 @@ IntegrationOptions tolerance(double tol) {
 }
 
 TEST(Integrators, EveryNameRunsTheFormsItTakes) {
-  const Mechanism mechanism(four_bar());
+  const Mechanism mechanism(equations::example("four_bar"));
   const Start start = equations::start_of(mechanism);
   for (const Integrator& method : integrators()) {
     RunRequest request;
@@ -71,7 +68,7 @@ std::string refusal(const Mechanism& mechanism, const std::string& form,
 }
 
 TEST(Integrators, RefuseWhatDoesNotFitWithASentence) {
-  const Mechanism mechanism(four_bar());
+  const Mechanism mechanism(equations::example("four_bar"));
   const auto with = [&](const std::string& form, const std::string& integrator,
                         const std::string& gauge = "none", bool project = false, double step = 0) {
     return refusal(mechanism, form, integrator, gauge, project, step);
@@ -119,7 +116,7 @@ TEST(Integrators, PropertiesFitEachOther) {
 }
 
 TEST(Bdf, ProjectedKeepsTheLoopsShut) {
-  const Mechanism mechanism(four_bar());
+  const Mechanism mechanism(equations::example("four_bar"));
   for (const char* form : {"momentum", "acceleration"}) {
     RunRequest request = equations::adaptive(form, "bdf", "leak", 1e-7, 5, 100);
     const RunResult free = run_form(mechanism, equations::start_of(mechanism), request);
@@ -334,7 +331,7 @@ TEST(Gauss, FailuresLimitsAndArguments) {
 
 TEST(GeneralisedAlpha, ConditionDoesNotGrowAsStepsShrink) {
   // Newton's iterations a step at h and h/1000, at the same tolerance.
-  const Mechanism mechanism(four_bar());
+  const Mechanism mechanism(equations::example("four_bar"));
   const Start start = equations::start_of(mechanism);
   for (const double h : {1e-3, 1e-6}) {
     const auto form = make_form("acceleration-index3", mechanism, {}, start);
@@ -351,7 +348,7 @@ TEST(GeneralisedAlpha, ConditionDoesNotGrowAsStepsShrink) {
 }
 
 TEST(GeneralisedAlpha, SamplesBetweenStepsKeepTheLoopsShut) {
-  const Mechanism mechanism(four_bar());
+  const Mechanism mechanism(equations::example("four_bar"));
   const RunResult run = run_form(
       mechanism, equations::start_of(mechanism),
       equations::stepped("acceleration-index3", "generalised-alpha", "none", 0.0101, 2, 77));
@@ -364,7 +361,8 @@ TEST(GeneralisedAlpha, SamplesBetweenStepsKeepTheLoopsShut) {
 TEST(BayoLedesma, HoldsPositionsRatesAndAccelerations) {
   // The last of the three by what projections are for: v̇ and λ of the trapezoidal rule alone swing
   // from step to step.
-  for (const Scene& scene : {four_bar(), equations::row_of_four_bars(12, 1.2)}) {
+  for (const Scene& scene :
+       {equations::example("four_bar"), equations::row_of_four_bars(12, 1.2)}) {
     const Mechanism mechanism(scene);
     const Start start = equations::start_of(mechanism);
     const auto form = make_form("acceleration-index3", mechanism, {}, start);
@@ -422,9 +420,10 @@ TEST(BayoLedesma, PassesRedundantLoopsAndAnyPenalty) {
 }
 
 TEST(Rattle, KeepsBothConstraintsEverywhere) {
-  const Mechanism planar(four_bar());
+  const Mechanism planar(equations::example("four_bar"));
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()));
-  const Mechanism redundant(turned(four_bar(), turn), {.algebra = Algebra::spatial});
+  const Mechanism redundant(turned(equations::example("four_bar"), turn),
+                            {.algebra = Algebra::spatial});
   for (const Mechanism* mechanism : {&planar, &redundant}) {
     double error[2];
     for (const int halvings : {0, 1}) {

@@ -10,6 +10,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/tolerance.h"
@@ -43,8 +44,7 @@ std::vector<double> rattled(const Scene& scene, KktChoice kkt, Algebra algebra) 
 
 TEST(SparseMatrices, OfRattle) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()));
-  const Scene four_bar = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" /
-                                    "four_bar" / "scene.toml");
+  const Scene four_bar = equations::example("four_bar");
   // The second has redundant loops.
   for (const auto& [scene, algebra] : {std::pair(row_of_four_bars(12, 1.2, 1), Algebra::automatic),
                                        std::pair(turned(four_bar, turn), Algebra::spatial),

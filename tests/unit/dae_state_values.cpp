@@ -1,6 +1,7 @@
 // Everything at one state against the open chain, against the equations it must satisfy, and
 // against balances of the whole mechanism.
 
+#include "equations/examples.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
@@ -22,10 +23,7 @@ using namespace equations;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
+using equations::example;
 
 VectorXd any(RandomTree& random, int size, double reach) {
   VectorXd x(size);
@@ -295,8 +293,7 @@ TEST(StateValues, ReactionsBalanceTheWhole) {
 
 TEST(StateValues, PendulumCutOpenPullsAsMuch) {
   const Mechanism hinged(example("pendulum"));
-  const Mechanism cartesian(
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/pendulum/cartesian.toml"));
+  const Mechanism cartesian(example("pendulum/cartesian.toml"));
   const double angle = 0.4, rate = 1.7;
   const StateValues a =
       evaluate_state(hinged, rates(0, VectorXd::Constant(1, angle), VectorXd::Constant(1, rate)));

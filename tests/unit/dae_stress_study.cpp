@@ -4,11 +4,13 @@
 
 #include <filesystem>
 
+#include "equations/examples.h"
+
 namespace momenta::dae_stress_study {
 namespace {
 
 Scene four_bar(double end) {
-  Scene s = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+  Scene s = equations::example("four_bar");
   s.run.end_time = end;
   s.run.samples = 100;
   return s;
@@ -51,8 +53,7 @@ TEST(StressStudy, AFormThatDriftsIsWrongInSilenceAndLeavesTheLadder) {
 TEST(StressStudy, OnlyLaddersOfAllAreCounted) {
   StressRequest request =
       climb(four_bar(1), Extreme::duration, {1, 2}, {{"momentum", ""}, {"projected", ""}});
-  Scene pendulum =
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/pendulum/scene.toml");
+  Scene pendulum = equations::example("pendulum");
   pendulum.run.end_time = 1;
   request.ladders.push_back(ladder_of(pendulum, Extreme::duration, {1, 2, 3}));
   const StressResult result = run_stress_study(request);

@@ -2,6 +2,7 @@
 // results, and that a study that goes on takes no time twice.
 
 #include "equations/ensemble.h"
+#include "equations/examples.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -47,8 +48,7 @@ TEST(Timing, MediansOfSteadyTimesSettleAtOnceAndOthersWithTheSquareOfTheirScatte
 
 class TimedStudy : public testing::Test {
  protected:
-  const Mechanism mechanism{
-      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml")};
+  const Mechanism mechanism{equations::example("four_bar")};
   const Start start = equations::start_of(mechanism);
   std::vector<RunResult> runs;
 
@@ -170,8 +170,7 @@ TEST_P(Repeats, TakeTheStepsOfTheMeasuredRun) {
   int compared = 0;
   for (const char* file : {"extremes/three_cranks.toml", "slider_crank/scene.toml",
                            "models/epr_robot_delta/robot.urdf"}) {
-    const Mechanism mechanism(
-        read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / file));
+    const Mechanism mechanism(equations::example(file));
     const Start start = assemble(mechanism).start;
     const IntegratedScene integrated(mechanism, start);
     for (const std::string& form : form_names())
