@@ -19,6 +19,7 @@
 #include "equations/gradient_runs.h"
 #include "equations/gradient_twin.h"
 #include "equations/linkages.h"
+#include "equations/refusal.h"
 
 namespace momenta::dae_adjoint {
 namespace {
@@ -1229,12 +1230,7 @@ TEST(Adjoint, IsTheForwardGradientOnAccelerations) {
 /// The sentence with which it is refused.
 std::string refusal(const SceneText& scene, GradientRequest request) {
   request.mode = GradientMode::adjoint;
-  try {
-    gradient(scene, request);
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown([&] { gradient(scene, request); });
 }
 
 TEST(Adjoint, RefusesInOneSentence) {

@@ -7,6 +7,7 @@
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/planar_pins.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -79,13 +80,10 @@ double acceleration_of(const Scene& scene, Algebra algebra) {
 }
 
 std::string refusal_of(const Scene& scene) {
-  try {
+  return equations::thrown<SceneError>([&] {
     const Mechanism mechanism(scene);
     assemble(mechanism);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
+  });
 }
 
 TEST(Bearings, CoefficientHasItsSlopeItsPeakAndItsSign) {

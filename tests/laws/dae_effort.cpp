@@ -5,6 +5,7 @@
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_tree.h"
+#include "equations/refusal.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 
@@ -79,15 +80,6 @@ Reference table_of(const Mechanism& mechanism, const std::vector<EffortRow>& row
     if (accelerations) values.back().insert(values.back().end(), row.udot.begin(), row.udot.end());
   }
   return Reference("a table", columns, t, values);
-}
-
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 // ID∘FD on trees of all joints, balls and free bodies with their quaternions among them.
@@ -475,41 +467,49 @@ TEST(Effort, SaysWhatIsAmiss) {
   };
   Scene both = bars;
   both.drives.push_back(harmonic("C", 1.7, 0.1, 2));
-  has(refusal([&] { along_drives(both, 2); }), "cannot");
+  has(equations::thrown<SceneError>([&] { along_drives(both, 2); }), "cannot");
   Scene rocked = bars;  // beyond the rocker's dead point
   rocked.drives = {harmonic("C", 1.9, 1.2, 2)};
-  has(refusal([&] { along_drives(rocked, 2); }), "the loops cannot follow the motion: loop 'B'");
+  has(equations::thrown<SceneError>([&] { along_drives(rocked, 2); }),
+      "the loops cannot follow the motion: loop 'B'");
   const Scene shaken = example("driven");
-  has(refusal([&] { along_drives(shaken, 1); }),
+  has(equations::thrown<SceneError>([&] { along_drives(shaken, 1); }),
       "leaves 1 degree of freedom open; expected as many more coordinates with a motion, or held, "
       "such as those of 'M.u'");
   EffortRequest held;
   held.motion.hold = {"M"};
-  has(refusal([&] { along_drives(shaken, 1, held); }), "no actuator holds the motion of 'M.u' (1)");
+  has(equations::thrown<SceneError>([&] { along_drives(shaken, 1, held); }),
+      "no actuator holds the motion of 'M.u' (1)");
   held.actuated = {"O", "M"};
   EXPECT_LT(residue(undriven(shaken), along_drives(shaken, 1, held)), 1e-12);
   EffortRequest wrong;
   wrong.actuated = {"X"};
-  has(refusal([&] { along_drives(bars, 1, wrong); }), "actuator 'X' is not known; expected 'O'");
+  has(equations::thrown<SceneError>([&] { along_drives(bars, 1, wrong); }),
+      "actuator 'X' is not known; expected 'O'");
   wrong.actuated = {"O", "O.q"};
-  has(refusal([&] { along_drives(bars, 1, wrong); }), "is named twice");
+  has(equations::thrown<SceneError>([&] { along_drives(bars, 1, wrong); }), "is named twice");
   wrong.actuated = {"O"};
   wrong.weights = {{"C", 1}};
-  has(refusal([&] { along_drives(bars, 1, wrong); }), "weight of 'C': it is not an actuator");
+  has(equations::thrown<SceneError>([&] { along_drives(bars, 1, wrong); }),
+      "weight of 'C': it is not an actuator");
   wrong.weights = {{"O", -1}};
-  has(refusal([&] { along_drives(bars, 1, wrong); }), "expected a number above zero");
+  has(equations::thrown<SceneError>([&] { along_drives(bars, 1, wrong); }),
+      "expected a number above zero");
   const Mechanism open(undriven(bars));
   const Reference nothing("none.csv", {"B.x [m]"}, {0, 1, 2}, {{0}, {1}, {2}});
   EffortRequest table;
   table.motion.table = &nothing;
   table.actuated = {"O"};
-  has(refusal([&] { effort(open, table); }), "there is no column of a coordinate");
+  has(equations::thrown<SceneError>([&] { effort(open, table); }),
+      "there is no column of a coordinate");
   const Reference degrees("degrees.csv", {"O.q [deg]"}, {0, 1, 2}, {{0}, {1}, {2}});
   table.motion.table = &degrees;
-  has(refusal([&] { effort(open, table); }), "found column 'O.q [deg]'; expected 'O.q [rad]'");
+  has(equations::thrown<SceneError>([&] { effort(open, table); }),
+      "found column 'O.q [deg]'; expected 'O.q [rad]'");
   const Reference two("two.csv", {"O.q [rad]"}, {0, 1}, {{1.5}, {1.6}});
   table.motion.table = &two;
-  has(refusal([&] { effort(open, table); }), "there are 2 rows; expected 3 at least");
+  has(equations::thrown<SceneError>([&] { effort(open, table); }),
+      "there are 2 rows; expected 3 at least");
   // Both ends of a linkage, one of them a little off: told, or let pass where that is asked for.
   const EffortResult right = along_drives(bars, 2);
   std::vector<double> when;
@@ -520,7 +520,7 @@ TEST(Effort, SaysWhatIsAmiss) {
   }
   const Reference apart("apart.csv", {"O.q [rad]", "C.q [rad]"}, when, off);
   table.motion.table = &apart;
-  has(refusal([&] { effort(open, table); }),
+  has(equations::thrown<SceneError>([&] { effort(open, table); }),
       "the loops cannot follow the motion: loop 'B' keeps '");
   table.within = 1e-3;
   const EffortResult let_pass = effort(open, table);
@@ -530,7 +530,7 @@ TEST(Effort, SaysWhatIsAmiss) {
   lifted.drives[0].joint.clear();
   lifted.drives[0].loop = "B";
   lifted.drives[0].origin = "x";
-  has(refusal([&] { undriven(lifted); }),
+  has(equations::thrown<SceneError>([&] { undriven(lifted); }),
       "drive of loop 'B': efforts are found of drives of joints");
 }
 

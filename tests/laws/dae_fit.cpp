@@ -13,6 +13,7 @@
 #include <numbers>
 #include <random>
 
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 #include "equations/traced_four_bar.h"
 
@@ -443,16 +444,6 @@ TEST(Fit, ThePictureHasBothMechanismsClosed) {
                 r.wanted.values(i, c));
 }
 
-/// The sentence of what is thrown.
-std::string refusal(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
-}
-
 // Files of wanted poses: what is read, and each thing that is wrong with one, by file and line.
 TEST(Fit, FilesOfWantedPoses) {
   const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
@@ -472,7 +463,7 @@ TEST(Fit, FilesOfWantedPoses) {
   EXPECT_TRUE(std::isnan(w.values(0, 1)) && std::isnan(w.values(1, 0)));
   EXPECT_EQ(w.values(1, 1), 1.5);
   const auto sentence = [&](const std::string& text) {
-    const std::string all = refusal([&] { read(text); });
+    const std::string all = equations::thrown([&] { read(text); });
     EXPECT_TRUE(all.starts_with(file.string() + ":")) << all;
     return all.substr(std::min(all.size(), file.string().size() + 1));
   };
@@ -495,38 +486,39 @@ TEST(Fit, FilesOfWantedPoses) {
 
 // What cannot be done is said in one sentence.
 TEST(Fit, WhatCannotBeDoneIsSaid) {
-  EXPECT_EQ(refusal([] { ParametricMechanism(traced_four_bar(), "four-bar", {}, {"crnk"}); }),
-            "'crnk': the scene has no parameter of that name; did you mean 'crank'?");
-  EXPECT_EQ(refusal([] {
+  EXPECT_EQ(
+      equations::thrown([] { ParametricMechanism(traced_four_bar(), "four-bar", {}, {"crnk"}); }),
+      "'crnk': the scene has no parameter of that name; did you mean 'crank'?");
+  EXPECT_EQ(equations::thrown([] {
               ParametricMechanism(traced_four_bar(), "four-bar", {}, {"tilt", "tilt"});
             }),
             "'tilt' is varied twice, expected each name once");
   EXPECT_EQ(FittedParameter::from_text("parameters.crank=1:2").name, "crank");
-  EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=1"); }),
+  EXPECT_EQ(equations::thrown([] { FittedParameter::from_text("crank=1"); }),
             "--vary 'crank=1': expected NAME or NAME=FROM:TO, as in crank=0.1:2");
-  EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=2:1"); }),
+  EXPECT_EQ(equations::thrown([] { FittedParameter::from_text("crank=2:1"); }),
             "--vary 'crank=2:1': expected the smaller end first");
-  EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=a:1"); }),
+  EXPECT_EQ(equations::thrown([] { FittedParameter::from_text("crank=a:1"); }),
             "--vary 'crank=a:1': found 'a', expected a number");
   const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   const WantedPoses wanted = wanted_by_trigonometry(
       ParametricMechanism(traced_four_bar(), "four-bar", {}, all_names).own(), {0.3, 0.6}, true);
   FitRequest request = varied({"crank"});
   request.starts = 2;
-  EXPECT_EQ(refusal([&] { fit(family, wanted, request); }),
+  EXPECT_EQ(equations::thrown([&] { fit(family, wanted, request); }),
             "parameter 'crank' has no range to draw starts from; expected crank=FROM:TO");
   request.parameters[0].range = {1.1, 1.2};
-  EXPECT_EQ(refusal([&] { fit(family, wanted, request); }),
+  EXPECT_EQ(equations::thrown([&] { fit(family, wanted, request); }),
             "parameter 'crank' is 1 in the scene, expected a number in its range, from 1.1 to 1.2");
   request = varied({"crank"});
   request.sweep = "X";
-  EXPECT_EQ(refusal([&] { fit(family, wanted, request); }),
+  EXPECT_EQ(equations::thrown([&] { fit(family, wanted, request); }),
             "coordinate 'X' is not known; expected 'O.q', 'A.q', 'C.q'");
   // The rocker does not come round: the crank's coupler does.
   request.sweep = "C";
   WantedPoses beyond = wanted;
   beyond.swept = {1.5, 4.0};
-  const std::string sentence = refusal([&] { fit(family, beyond, request); });
+  const std::string sentence = equations::thrown([&] { fit(family, beyond, request); });
   EXPECT_TRUE(
       sentence.starts_with("no start is possible; the first is not, as C.q = 4 is not "
                            "reached: from its start, "))

@@ -16,6 +16,7 @@
 #include "equations/gradient_runs.h"
 #include "equations/gradient_twin.h"
 #include "equations/linkages.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 namespace momenta::dae_gradient {
@@ -327,12 +328,7 @@ TEST(Gradient, TellsWhatDoesNotMatterAndWhatIsNotSmooth) {
 
 /// The sentence with which it is refused.
 std::string refusal(const SceneText& scene, const GradientRequest& request) {
-  try {
-    gradient(scene, request);
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown([&] { gradient(scene, request); });
 }
 
 TEST(Gradient, RefusesInOneSentence) {

@@ -15,6 +15,7 @@
 #include <numbers>
 
 #include "equations/parts.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 #include "equations/traced_four_bar.h"
 
@@ -555,15 +556,6 @@ TEST(Least, MechanismsThatDoNotCloseAreNoCandidates) {
       << r.starts.front().why;
 }
 
-std::string refusal(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
-}
-
 // What formulas and conditions are, and what they are not, in one sentence.
 TEST(Least, FormulasOfMotions) {
   const MotionFormula f = MotionFormula::from_text("max(P.y, 0) + 2*max (P.x^2) - 'a-max'.q");
@@ -571,13 +563,13 @@ TEST(Least, FormulasOfMotions) {
   ASSERT_EQ(f.parts.size(), 1u);
   EXPECT_EQ(f.parts[0].formula, "P.x^2");
   EXPECT_EQ(
-      refusal([] { MotionFormula::from_text("max(mean(P.x))"); }),
+      equations::thrown([] { MotionFormula::from_text("max(mean(P.x))"); }),
       "'max(mean(P.x))': max(…) of a motion holds another; expected a formula of single poses "
       "in it");
-  EXPECT_EQ(refusal([] { MotionFormula::from_text("max(P.x"); }),
+  EXPECT_EQ(equations::thrown([] { MotionFormula::from_text("max(P.x"); }),
             "'max(P.x': a bracket is not closed, expected ')'");
   const auto condition = [](const std::string& text) {
-    return refusal([&] { MotionCondition::from_text(text, {"a", "b"}); });
+    return equations::thrown([&] { MotionCondition::from_text(text, {"a", "b"}); });
   };
   constexpr const char* one =
       ": expected one comparison, as in 'a + d <= b + c', and a condition of its own for each";
@@ -591,13 +583,13 @@ TEST(Least, FormulasOfMotions) {
   EXPECT_EQ(MotionCondition::from_text("P.x >= a", {"a"}).gap.parts[0].formula, "(a) - (P.x)");
   const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   const std::vector<FittedParameter> crank{{"crank", std::nullopt}};
-  EXPECT_EQ(refusal([&] { least(family, of_crank("max(Q.x)", crank)); }).substr(0, 25),
+  EXPECT_EQ(equations::thrown([&] { least(family, of_crank("max(Q.x)", crank)); }).substr(0, 25),
             "'Q.x': unknown name 'Q.x'");
-  EXPECT_TRUE(refusal([&] {
+  EXPECT_TRUE(equations::thrown([&] {
                 least(family, of_crank("P.x + max(P.y)", crank));
               }).starts_with("'P.x + max(P.y)': found a name that is no parameter outside of"));
   const ParametricMechanism swinging(pendulum(), "pendulum", {}, {"length"});
-  EXPECT_TRUE(refusal([&] {
+  EXPECT_TRUE(equations::thrown([&] {
                 least(swinging, of_a_run("max(O.q)", {{"length", std::nullopt}}));
               }).starts_with("'O.q': of a run no largest, smallest or first value is taken"));
 }

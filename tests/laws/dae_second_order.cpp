@@ -5,6 +5,7 @@
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/parts.h"
+#include "equations/refusal.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/toml/parse_scene.h>
@@ -21,12 +22,7 @@ namespace {
 using namespace equations;
 
 std::string refusal(const Scene& scene, Assembled what = Assembled::motion) {
-  try {
-    assemble(Mechanism(scene), what);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown<SceneError>([&] { assemble(Mechanism(scene), what); });
 }
 bool is_told(const std::string& sentence, const std::string& part) {
   return sentence.find(part) != std::string::npos;

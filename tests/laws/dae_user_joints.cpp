@@ -12,6 +12,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/exact_jacobian.h"
+#include "equations/refusal.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 #include "equations/user_loops.h"
@@ -323,20 +324,13 @@ TEST(UserJointsInLoops, Units) {
 }
 
 TEST(UserJointsInLoops, WhatIsRefused) {
-  const auto message = [](const auto& act) -> std::string {
-    try {
-      act();
-    } catch (const std::exception& e) {
-      return e.what();
-    }
-    return "";
-  };
   const Mechanism two(pairs()[1].user);
-  EXPECT_EQ(message([&] { make_form("maximal-coordinates", two, {}, assemble(two).start); }),
-            "maximal coordinates take user joints of one coordinate, but joint 'U' has 2; expected "
-            "another form");
   EXPECT_EQ(
-      message([&] { make_quad_motion(two); }),
+      equations::thrown([&] { make_form("maximal-coordinates", two, {}, assemble(two).start); }),
+      "maximal coordinates take user joints of one coordinate, but joint 'U' has 2; expected "
+      "another form");
+  EXPECT_EQ(
+      equations::thrown([&] { make_quad_motion(two); }),
       "joint 'U' is a user joint, whose formula has no values in quadruple precision; expected "
       "a reference from a file");
 }

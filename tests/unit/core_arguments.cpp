@@ -11,20 +11,12 @@
 #include <vector>
 
 #include "equations/random_tree.h"
+#include "equations/refusal.h"
 
 namespace momenta::core_arguments {
 namespace {
 
 using Eigen::VectorXd;
-
-std::string thrown(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
-}
 
 class Arguments : public testing::Test {
  protected:
@@ -39,7 +31,7 @@ TEST_F(Arguments, OfWrongSizeAreThrown) {
   VectorXd out(3);
   const std::string nq = std::to_string(nq_), nv = std::to_string(nv_);
   const auto expect = [](const std::function<void()>& call, const std::string& sentence) {
-    EXPECT_EQ(thrown(call), sentence);
+    EXPECT_EQ(equations::thrown<std::invalid_argument>(call), sentence);
   };
   expect([&] { chain_.rates(0, few, p_, qdot_, pdot_); }, "rates: q has 2 numbers, expected " + nq);
   expect([&] { chain_.rates(0, q_, p_, out, pdot_); }, "rates: qdot has 3 numbers, expected " + nq);
@@ -98,10 +90,14 @@ TEST_F(Arguments, ThatAreNoNumbersAreTold) {
   EXPECT_EQ(chain_.failure(), "tau[2] is minus infinite, expected a finite number");
   EXPECT_EQ(chain_.jacobian(0, bad_q, p_).size(), 0);
   EXPECT_EQ(chain_.failure(), of_q);
-  EXPECT_EQ(thrown([&] { chain_.momenta(0, bad_q, u_, p_); }), "momenta: " + of_q);
-  EXPECT_EQ(thrown([&] { chain_.energies(0, bad_q, u_); }), "energies: " + of_q);
-  EXPECT_EQ(thrown([&] { chain_.mass_matrix(0, bad_q); }), "mass_matrix: " + of_q);
-  EXPECT_EQ(thrown([&] { chain_.poses(0, bad_q); }), "poses: " + of_q);
+  EXPECT_EQ(equations::thrown<std::invalid_argument>([&] { chain_.momenta(0, bad_q, u_, p_); }),
+            "momenta: " + of_q);
+  EXPECT_EQ(equations::thrown<std::invalid_argument>([&] { chain_.energies(0, bad_q, u_); }),
+            "energies: " + of_q);
+  EXPECT_EQ(equations::thrown<std::invalid_argument>([&] { chain_.mass_matrix(0, bad_q); }),
+            "mass_matrix: " + of_q);
+  EXPECT_EQ(equations::thrown<std::invalid_argument>([&] { chain_.poses(0, bad_q); }),
+            "poses: " + of_q);
   // The next good call is good again.
   EXPECT_TRUE(chain_.rates(0, q_, p_, qdot_, pdot_)) << chain_.failure();
   EXPECT_EQ(chain_.failure(), "");

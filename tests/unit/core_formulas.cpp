@@ -2,6 +2,7 @@
 // written and read again.
 
 #include "equations/random_tree.h"
+#include "equations/refusal.h"
 #include "equations/same_scene.h"
 
 #include <gtest/gtest.h>
@@ -193,12 +194,7 @@ TEST(Formulas, FunctionsAreSplines) {
 }
 
 std::string refused(const Scene& scene) {
-  try {
-    validate(scene);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown<SceneError>([&] { validate(scene); });
 }
 
 TEST(Formulas, OfScenesByHandAreChecked) {

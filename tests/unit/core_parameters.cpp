@@ -6,6 +6,8 @@
 #include <momenta/core/scene/toml/setting.h>
 #include <momenta/core/scene/toml/write_scene.h>
 
+#include "equations/refusal.h"
+
 namespace momenta::core_parameters {
 namespace {
 
@@ -75,12 +77,7 @@ std::string with_numbers(const std::string& a, const std::string& b, const std::
 }
 
 std::string sentence(const std::string& text, const std::vector<Setting>& settings = {}) {
-  try {
-    (void)parse_scene(text, "scene.toml", settings);
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown([&] { (void)parse_scene(text, "scene.toml", settings); });
 }
 
 TEST(Parameters, StandForTheirNumbers) {

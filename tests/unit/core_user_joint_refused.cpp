@@ -5,6 +5,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 
 #include "equations/parts.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"
 
@@ -71,12 +72,7 @@ TEST(UserJoint, WhatIsRefused) {
   const auto message = [](const auto& change) -> std::string {
     Scene scene = alone({{{a_turn, slanted}}});
     change(scene, scene.joints[0]);
-    try {
-      OpenChain chain(scene);
-    } catch (const SceneError& e) {
-      return e.what();
-    }
-    return "";
+    return equations::thrown<SceneError>([&] { OpenChain chain(scene); });
   };
   EXPECT_EQ(message([](Scene&, JointSpec&) {}), "");
   EXPECT_EQ(message([](Scene&, JointSpec& j) { j.law.reset(); }),

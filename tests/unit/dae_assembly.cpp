@@ -5,6 +5,7 @@
 #include "equations/linkages.h"
 #include "equations/parts.h"
 #include "equations/random_tree.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -28,12 +29,7 @@ using equations::example;
 
 std::string complaint(const Scene& scene) {
   const Mechanism mechanism(scene);
-  try {
-    assemble(mechanism);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown<SceneError>([&] { assemble(mechanism); });
 }
 
 /// Φ, Φ̇, Φ̈ and (1a) at the start, all zero.

@@ -6,6 +6,7 @@
 #include "equations/parts.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -69,12 +70,7 @@ GivenState at_start(const Mechanism& mechanism) {
 }
 
 std::string refusal(const Scene& scene) {
-  try {
-    assemble(Mechanism(scene));
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
+  return equations::thrown<SceneError>([&] { assemble(Mechanism(scene)); });
 }
 
 TEST(MasslessJoints, OpenChainsNameThem) {

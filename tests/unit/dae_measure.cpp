@@ -12,6 +12,7 @@
 #include <random>
 
 #include "equations/examples.h"
+#include "equations/refusal.h"
 #include "equations/runs.h"
 
 namespace momenta::dae_measure {
@@ -96,12 +97,7 @@ class ReferenceFile : public testing::Test {
     return file_;
   }
   std::string complaint(const std::string& text) {
-    try {
-      Reference reference(write(text));
-    } catch (const SceneError& e) {
-      return e.what();
-    }
-    return "";
+    return equations::thrown<SceneError>([&] { Reference reference(write(text)); });
   }
   void expect_complaint(const std::string& text, const std::string& place,
                         const std::string& words) {
