@@ -19,10 +19,9 @@ TEST_F(FitOfTheProgram, FindsHoeckensLinkageAndWritesItsScene) {
                     out = "'" + (folder_ / "f").string() + "'";
   const Outcome o = call("fit '" + example("straight_line") + "'" + wanted + " --out " + out);
   EXPECT_EQ(o.status, 0) << o.err;
-  EXPECT_NE(o.out.find("The largest error of 13 poses is 4.7 mm; as the scene is, 0.99 m. A "
-                       "minimum, of one start."),
-            std::string::npos)
-      << o.out;
+  EXPECT_TRUE(says(o.out,
+                   "The largest error of 13 poses is 4.7 mm; as the scene is, 0.99 m. A "
+                   "minimum, of one start."));
   const auto json = nlohmann::json::parse(text_of(folder_ / "f" / "fit.json"));
   EXPECT_EQ(json["converged"], true);
   EXPECT_EQ(json["places_given"], false);
@@ -37,8 +36,8 @@ TEST_F(FitOfTheProgram, FindsHoeckensLinkageAndWritesItsScene) {
             "O.q [rad],P.x.wanted [m],P.x [m],P.x.before [m],P.y.wanted [m],P.y [m],"
             "P.y.before [m]");
   const std::string page = text_of(folder_ / "f" / "index.html");
-  EXPECT_NE(page.find("Synthesis"), std::string::npos);
-  EXPECT_NE(page.find("before: coupler"), std::string::npos);
+  EXPECT_TRUE(says(page, "Synthesis"));
+  EXPECT_TRUE(says(page, "before: coupler"));
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));
 
   // The scene that was written is at the minimum already.
@@ -55,9 +54,7 @@ TEST_F(FitOfTheProgram, FindsParametersOfAMeasuredMotion) {
                     out = "'" + (folder_ / "f").string() + "'";
   const Outcome o = call(scene + " --vary stiffness=1:20,damping,centre --out " + out);
   EXPECT_EQ(o.status, 0) << o.err;
-  EXPECT_NE(o.out.find("Of 202 numbers measured at 101 times the rms error is 0.0049 rad"),
-            std::string::npos)
-      << o.out;
+  EXPECT_TRUE(says(o.out, "Of 202 numbers measured at 101 times the rms error is 0.0049 rad"));
   const auto json = nlohmann::json::parse(text_of(folder_ / "f" / "fit.json"));
   EXPECT_EQ(json["converged"], true);
   EXPECT_EQ(json["motion"], "measured");
@@ -69,9 +66,9 @@ TEST_F(FitOfTheProgram, FindsParametersOfAMeasuredMotion) {
                   .starts_with("t [s],O.q.measured [rad],O.q [rad],O.q.before [rad],"
                                "C.q.measured [rad],C.q [rad],C.q.before [rad]\n0,0.4064,"));
   const std::string page = text_of(folder_ / "f" / "index.html");
-  EXPECT_NE(page.find("Identification"), std::string::npos);
-  EXPECT_NE(page.find("before: coupler"), std::string::npos);
-  EXPECT_NE(text_of(folder_ / "f" / "fitted.toml").find("# N m s, at O"), std::string::npos);
+  EXPECT_TRUE(says(page, "Identification"));
+  EXPECT_TRUE(says(page, "before: coupler"));
+  EXPECT_TRUE(says(text_of(folder_ / "f" / "fitted.toml"), "# N m s, at O"));
 
   expect_refused(scene + " --vary centre --poses 9", "--over, --poses and --rate are of a motion");
   expect_refused(scene + " --vary centre --keep 'centre < 1'",
@@ -103,8 +100,8 @@ TEST_F(FitOfTheProgram, MakesAFunctionalLeast) {
   EXPECT_EQ(json["motion"], "swept");
   EXPECT_TRUE(
       text_of(folder_ / "f" / "fit.csv").starts_with("O.q [rad],P.y,P.y before,P.x,P.x before\n"));
-  EXPECT_NE(text_of(folder_ / "f" / "index.html").find("before: coupler"), std::string::npos);
-  EXPECT_NE(text_of(folder_ / "f" / "fitted.toml").find("coupler = 2.5"), std::string::npos);
+  EXPECT_TRUE(says(text_of(folder_ / "f" / "index.html"), "before: coupler"));
+  EXPECT_TRUE(says(text_of(folder_ / "f" / "fitted.toml"), "coupler = 2.5"));
   EXPECT_FALSE(fs::exists(folder_ / "f" / "runs.jsonl"));
 
   const std::string run = scene + " --vary coupler --end 0.5 --integrator rk4 --step 0.01";
@@ -129,7 +126,7 @@ TEST_F(FitOfTheProgram, GoesOnWhereItWasKilled) {
   status_when_killed(search + killed, folder_ / "killed" / "runs.jsonl", 3);
   const Outcome again = call(search + killed), once = call(search + whole);
   EXPECT_EQ(again.status, once.status) << again.err;
-  EXPECT_NE(again.err.find("of 6 runs taken from"), std::string::npos) << again.err;
+  EXPECT_TRUE(says(again.err, "of 6 runs taken from"));
   const auto a = nlohmann::json::parse(text_of(folder_ / "killed" / "fit.json")),
              b = nlohmann::json::parse(text_of(folder_ / "whole" / "fit.json"));
   for (const char* key : {"after", "parameters", "keep", "starts", "best"})

@@ -35,19 +35,17 @@ std::string meshes_of(const std::string& page) {
 
 TEST_F(Robots, MeshesAreDrawnWithinTheirBytes) {
   const std::string page = call("view " + robot() + " --quiet").out;
-  EXPECT_NE(meshes_of(page).find("\"corners\":"), std::string::npos);
+  EXPECT_TRUE(says(meshes_of(page), "\"corners\":"));
   const Outcome none = call("view " + robot() + " --mesh-bytes 0");
   EXPECT_EQ(meshes_of(none.out), "");
-  EXPECT_NE(none.err.find("left out of the page: meshes (1), by --mesh-bytes 0"), std::string::npos)
-      << none.err;
-  EXPECT_NE(call("view " + robot() + " --mesh-bytes 20").err.find("--mesh-bytes 20 does not hold"),
-            std::string::npos);
+  EXPECT_TRUE(says(none.err, "left out of the page: meshes (1), by --mesh-bytes 0"));
+  EXPECT_TRUE(
+      says(call("view " + robot() + " --mesh-bytes 20").err, "--mesh-bytes 20 does not hold"));
   expect_refused("view " + robot() + " --mesh-bytes -1", "--mesh-bytes");
   // The scene that it is converted to finds them from its own folder.
   const fs::path scene = folder_ / "there" / "s.toml";
   EXPECT_EQ(call("convert " + robot() + " '" + scene.string() + "'").status, 0);
-  EXPECT_NE(text_of(scene).find("file = \"../robot/meshes/t.obj\""), std::string::npos)
-      << text_of(scene);
+  EXPECT_TRUE(says(text_of(scene), "file = \"../robot/meshes/t.obj\""));
   EXPECT_EQ(meshes_of(call("view '" + scene.string() + "' --quiet").out), meshes_of(page));
 }
 
@@ -55,14 +53,10 @@ TEST_F(Robots, LimitsAreToldAndStop) {
   const std::string fall = "run " + robot() + " --end 1 --timing none --samples 1";
   const Outcome passed = call(fall);
   EXPECT_EQ(passed.status, 0) << passed.err;
-  EXPECT_NE(passed.err.find("joint 'j' is beyond its limits [-1, 1] m from t = 0.451"),
-            std::string::npos)
-      << passed.err;
+  EXPECT_TRUE(says(passed.err, "joint 'j' is beyond its limits [-1, 1] m from t = 0.451"));
   EXPECT_EQ(call(fall + " --quiet").err, "");
   const Outcome stopped = call(fall + " --stops 1e4,300");
-  EXPECT_NE(stopped.err.find("joint 'j' is at its stops beyond [-1, 1] m from t = 0.451"),
-            std::string::npos)
-      << stopped.err;
+  EXPECT_TRUE(says(stopped.err, "joint 'j' is at its stops beyond [-1, 1] m from t = 0.451"));
   for (const std::string wrong : {"x", "-1", "0", "1,", "1,2,3", "1,-2", "nan"})
     expect_refused("check " + robot() + " --stops=" + wrong,
                    "--stops '" + wrong + "': expected STIFFNESS or STIFFNESS,DAMPING");
@@ -78,8 +72,8 @@ TEST_F(Robots, LimitsOfJointsThatBecomeLoopsAreTold) {
   const Outcome told = call("convert '" + scene.string() + "' '" + anew.string() + "' --recut");
   EXPECT_EQ(told.status, 0) << told.err;
   const std::string words = "left out: limits of joints that became loops: '";
-  EXPECT_NE(told.err.find(words), std::string::npos) << told.err;
-  EXPECT_NE(text_of(anew).find(words), std::string::npos);
+  EXPECT_TRUE(says(told.err, words));
+  EXPECT_TRUE(says(text_of(anew), words));
   EXPECT_EQ(call("convert '" + scene.string() + "'").err, "");
 }
 

@@ -157,8 +157,7 @@ TEST_F(Stopped, AKilledRunLeavesItsLinesAndEarlierResults) {
   // Another command leaves them alone, until it is made sure that they are not wanted.
   const Outcome refused = call(before);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("checkpoint.json belongs to an unfinished run, '"), std::string::npos)
-      << refused.err;
+  EXPECT_TRUE(says(refused.err, "checkpoint.json belongs to an unfinished run, '"));
   EXPECT_EQ(text_of(folder_ / "out/trajectory.csv.part"), part);
   fs::remove(folder_ / "out/checkpoint.json");
   ASSERT_EQ(call(before).status, 0);
@@ -222,7 +221,7 @@ TEST_F(RunsThatGoOn, OrSayWhyTheyAreBegunAnew) {
   for (const char* text : {"{\"study\": ", "[]"}) {
     const Outcome o = with(text);
     EXPECT_EQ(o.status, 0);
-    EXPECT_NE(o.err.find(": begun anew\n"), std::string::npos) << o.err;
+    EXPECT_TRUE(says(o.err, ": begun anew\n"));
     expect_whole();
   }
   EXPECT_EQ(with("{}").status, 2);  // of a run without a name
@@ -231,9 +230,7 @@ TEST_F(RunsThatGoOn, OrSayWhyTheyAreBegunAnew) {
   std::ofstream(part_, std::ios::binary) << "other rows\n";
   const Outcome others = call(command_ + out_);
   EXPECT_EQ(others.status, 0);
-  EXPECT_NE(others.err.find("checkpoint.json is not of the trajectory beside it: begun anew"),
-            std::string::npos)
-      << others.err;
+  EXPECT_TRUE(says(others.err, "checkpoint.json is not of the trajectory beside it: begun anew"));
   expect_whole();
 }
 
@@ -250,7 +247,7 @@ TEST_F(Stopped, AFolderThatIsRemovedMeanwhileEndsARunAndNoStudy) {
   EXPECT_EQ(removed("run" + scene + endless, "checkpoint.json"), 1);
   EXPECT_EQ(lines_of(err()), 1) << err();
   EXPECT_EQ(err().rfind("momenta: the run stopped: at t = ", 0), 0u) << err();
-  EXPECT_NE(err().find("out/trajectory.csv: No such file or directory."), std::string::npos);
+  EXPECT_TRUE(says(err(), "out/trajectory.csv: No such file or directory."));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_GT(lines_of(text_of(folder_ / "outgone/trajectory.csv.part")), 1);
   fs::remove_all(folder_ / "outgone");
@@ -272,8 +269,8 @@ TEST_F(Stopped, WhereNoFolderCanBeNothingRuns) {
       const Outcome o = call(verb + scene + varied + out + below);
       EXPECT_EQ(o.status, 1) << verb;
       EXPECT_EQ(lines_of(o.err), 1) << o.err;
-      EXPECT_NE(o.err.find("/file"), std::string::npos) << o.err;
-      EXPECT_NE(o.err.find(": Not a directory."), std::string::npos) << o.err;
+      EXPECT_TRUE(says(o.err, "/file"));
+      EXPECT_TRUE(says(o.err, ": Not a directory."));
       EXPECT_EQ(text_of(folder_ / "file"), "in the way");
     }
   // Who may not write is told so; to the system's own user everything is writable.
@@ -283,7 +280,7 @@ TEST_F(Stopped, WhereNoFolderCanBeNothingRuns) {
   for (const char* verb : {"run", "drift", "modes"}) {
     const Outcome o = call(verb + scene + at("locked"));
     EXPECT_EQ(o.status, 1) << verb;
-    EXPECT_NE(o.err.find(": Permission denied."), std::string::npos) << o.err;
+    EXPECT_TRUE(says(o.err, ": Permission denied."));
   }
 }
 
@@ -292,8 +289,7 @@ TEST_F(Stopped, TwoRunsAtOnceInOneDirectoryAreRefused) {
   const PartFile other(folder_ / "out/trajectory.csv");
   const Outcome o = call("run '" + example("four_bar") + "' --end 1" + at("out"));
   EXPECT_EQ(o.status, 1);
-  EXPECT_NE(o.err.find("trajectory.csv: another process is writing it."), std::string::npos)
-      << o.err;
+  EXPECT_TRUE(says(o.err, "trajectory.csv: another process is writing it."));
 }
 
 TEST_F(Stopped, WithoutRoomARunKeepsWholeLinesAndSaysSo) {
@@ -309,7 +305,7 @@ TEST_F(Stopped, WithoutRoomARunKeepsWholeLinesAndSaysSo) {
     EXPECT_EQ(part.back(), '\n');
     const auto told = json::parse(text_of(out / "summary.json"));
     EXPECT_EQ(told["status"], "failed");
-    EXPECT_NE(told["reason"].get<std::string>().find(cause), std::string::npos) << told["reason"];
+    EXPECT_TRUE(says(told["reason"].get<std::string>(), cause)) << told["reason"];
     for (const auto& entry : fs::directory_iterator(out))
       EXPECT_NE(entry.path().extension(), ".part") << entry.path();
   };
@@ -325,13 +321,13 @@ TEST_F(Stopped, WithoutRoomARunKeepsWholeLinesAndSaysSo) {
   if (!small) GTEST_SKIP() << "no right to mount a small disk";
   const Outcome full = call(command + "'" + (disk / "out").string() + "'");
   EXPECT_EQ(full.status, 1);
-  EXPECT_NE(full.err.find("No space left on device"), std::string::npos) << full.err;
+  EXPECT_TRUE(says(full.err, "No space left on device"));
   expect_part(disk / "out", "trajectory.csv: No space left on device.");
   // No page of another run stands beside them, and no room at all is told before anything runs.
   EXPECT_FALSE(fs::exists(disk / "out/index.html"));
   const Outcome none = call(command + "'" + (disk / "none").string() + "'");
   EXPECT_EQ(none.status, 1);
-  EXPECT_NE(none.err.find("No space left on device"), std::string::npos) << none.err;
+  EXPECT_TRUE(says(none.err, "No space left on device"));
   EXPECT_FALSE(fs::exists(disk / "none"));
 }
 
@@ -357,14 +353,14 @@ TEST_F(Stopped, FilesOfAStudyAreReplacedTogetherOrNotAtAll) {
     fs::create_directories(out / name);
     const Outcome o = call(study + "2");
     EXPECT_EQ(o.status, 1);
-    EXPECT_NE(o.err.find(": Is a directory."), std::string::npos) << o.err;
+    EXPECT_TRUE(says(o.err, ": Is a directory."));
     EXPECT_EQ(results(), before);
     fs::remove(out / name);
   }
   // Its runs are kept.
   const Outcome again = call(study + "2");
   EXPECT_EQ(again.status, 0);
-  EXPECT_NE(again.err.find(" runs taken from "), std::string::npos) << again.err;
+  EXPECT_TRUE(says(again.err, " runs taken from "));
   const auto after = results();
   EXPECT_EQ(after.size(), before.size());
   for (const auto& [file, text] : after)
@@ -382,13 +378,13 @@ TEST_F(Stopped, WithoutRoomAStudyGoesOnOnceThereIsSome) {
                             disk.string() + "'";
   const Outcome o = call(study);
   EXPECT_EQ(o.status, 1);
-  EXPECT_NE(o.err.find("No space left on device."), std::string::npos) << o.err;
+  EXPECT_TRUE(says(o.err, "No space left on device."));
   EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1);
   ASSERT_TRUE(fs::exists(disk / "runs.jsonl"));
   ASSERT_EQ(::mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT, "size=30m"), 0);
   const Outcome again = call(study);
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_NE(again.err.find(" runs taken from "), std::string::npos) << again.err;
+  EXPECT_TRUE(says(again.err, " runs taken from "));
   const std::string whole = folder_ / "whole";
   ASSERT_EQ(call(study.substr(0, study.find(" --out")) + " --out '" + whole + "'").status, 0);
   EXPECT_EQ(untimed(json::parse(text_of(disk / "summary.json"))),
@@ -402,9 +398,8 @@ TEST_F(Stopped, StandardOutputThatIsFullIsTold) {
     const std::string command =
         program() + verb + " >/dev/full 2>'" + (folder_ / "err").string() + "'";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << verb;  // NOLINT: this test's own
-    EXPECT_NE(err().find("momenta: standard output cannot be written: No space left on device\n"),
-              std::string::npos)
-        << err();
+    EXPECT_TRUE(
+        says(err(), "momenta: standard output cannot be written: No space left on device\n"));
   }
 }
 
@@ -423,7 +418,7 @@ TEST(Clocks, ThatCanStepDateResultsAlone) {
             "CLOCK_REALTIME", "utc_clock", "last_write_time"}) {
         if (entry.path().filename() == "environment.cpp" && clock == std::string("time(nullptr)"))
           continue;
-        EXPECT_EQ(source.find(clock), std::string::npos) << entry.path() << ": " << clock;
+        EXPECT_FALSE(says(source, clock)) << entry.path() << ": " << clock;
       }
     }
   EXPECT_GT(files, 300);

@@ -2,6 +2,7 @@
 // The program called as its users call it, from a folder that is gone after the test.
 
 #include "equations/output_of.h"
+#include "equations/refusal.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -17,7 +18,7 @@ namespace momenta::golden {
 
 namespace fs = std::filesystem;
 
-using equations::text_of;
+using equations::says, equations::text_of;
 
 struct Outcome {
   int status = -1;
@@ -74,8 +75,7 @@ class Program : public testing::Test {
     EXPECT_EQ(o.status, 2) << arguments << "\n" << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
     EXPECT_EQ(o.err.rfind("momenta: ", 0), 0u) << o.err;
-    EXPECT_NE(o.err.find(mentions), std::string::npos)
-        << "expected '" << mentions << "' in: " << o.err;
+    EXPECT_TRUE(says(o.err, mentions)) << "expected '" << mentions << "' in: ";
     EXPECT_TRUE(o.out.empty()) << o.out;
   }
 
