@@ -4,6 +4,7 @@
 #include "equations/assembled_linkages.h"
 #include "equations/decompositions.h"
 #include "equations/parts.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -79,12 +80,7 @@ TEST(Assemblies, DoNotDependOnThreadsNorSeeds) {
 
 TEST(Assemblies, AreRefusedWhereAFreedomIsLeft) {
   const auto says = [](const AssembliesRequest& request) {
-    try {
-      found_in(closed_four_bar(1), request);
-    } catch (const SceneError& e) {
-      return std::string(e.what());
-    }
-    return std::string("nothing");
+    return equations::thrown<SceneError>([&] { found_in(closed_four_bar(1), request); });
   };
   EXPECT_NE(says({}).find("leaves 1 degree of freedom"), std::string::npos) << says({});
   EXPECT_NE(says({}).find("such as '"), std::string::npos) << says({});

@@ -345,12 +345,8 @@ TEST(Bearings, FormsWithoutAccelerationsRefuse) {
   const Mechanism mechanism(four_bar());
   for (const char* form : {"momentum-index1", "momentum-index2", "momentum-stabilised",
                            "momentum-index3", "maximal-coordinates"}) {
-    std::string reason;
-    try {
-      run_of(mechanism, form, "", "", 1e-8, 1);
-    } catch (const std::invalid_argument& e) {
-      reason = e.what();
-    }
+    const std::string reason =
+        equations::thrown<std::invalid_argument>([&] { run_of(mechanism, form, "", "", 1e-8, 1); });
     EXPECT_NE(reason.find("joint 'O' has a bearing, whose friction takes accelerations"),
               std::string::npos)
         << form << ": " << reason;
@@ -364,12 +360,8 @@ TEST(Bearings, IntegratorsOfHamiltoniansRefuse) {
     RunRequest request;
     request.settings.integrator = integrator;
     request.settings.step = 1e-3;
-    std::string reason;
-    try {
-      run_form(mechanism, start, request);
-    } catch (const std::invalid_argument& e) {
-      reason = e.what();
-    }
+    const std::string reason =
+        equations::thrown<std::invalid_argument>([&] { run_form(mechanism, start, request); });
     EXPECT_EQ(reason,
               "joint 'O' has a bearing, whose friction takes accelerations and forces of loops, "
               "and '" +

@@ -3,6 +3,7 @@
 
 #include "equations/assembled_linkages.h"
 #include "equations/parts.h"
+#include "equations/refusal.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kinematics/homotopy.h>
@@ -259,12 +260,7 @@ TEST(CountedAssemblies, OfAPlatformOnSixRodsAreForty) {
 
 TEST(CountedAssemblies, AreRefusedOfLoopsThatAreNoPolynomials) {
   const auto says = [](const Scene& scene, const AssembliesRequest& request) {
-    try {
-      found_in(scene, request);
-    } catch (const SceneError& e) {
-      return std::string(e.what());
-    }
-    return std::string("nothing");
+    return equations::thrown<SceneError>([&] { found_in(scene, request); });
   };
   AssembliesRequest request;
   request.hold = {"O"};

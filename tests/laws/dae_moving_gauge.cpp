@@ -4,6 +4,7 @@
 #include "equations/ensemble.h"
 #include "equations/examples.h"
 #include "equations/linkages.h"
+#include "equations/refusal.h"
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 
@@ -283,12 +284,8 @@ TEST(Bdf5, GaugesThatAMethodCannotTake) {
   const Mechanism mechanism(example("four_bar"));
   const auto refusal = [&](const std::string& integrator, const std::string& gauge) {
     RunRequest request = equations::adaptive("momentum-index2", integrator, gauge, 1e-8, 1, 1);
-    try {
-      run_form(mechanism, equations::start_of(mechanism), request);
-    } catch (const std::invalid_argument& e) {
-      return std::string(e.what());
-    }
-    return std::string();
+    return equations::thrown<std::invalid_argument>(
+        [&] { run_form(mechanism, equations::start_of(mechanism), request); });
   };
   EXPECT_NE(refusal("ida", "reset").find("expected integrator bdf5, radau5, hem5 or hem8"),
             std::string::npos)

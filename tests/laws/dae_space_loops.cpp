@@ -3,6 +3,7 @@
 
 #include "equations/assembled_linkages.h"
 #include "equations/parts.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -332,12 +333,7 @@ TEST(SpaceLoops, WithSlidesAreWhatASearchFinds) {
 
 TEST(SpaceLoops, AreRefusedByWhatMakesThemOthers) {
   const auto says = [](const Scene& scene, const std::vector<std::string>& hold) {
-    try {
-      all_of(scene, hold);
-    } catch (const SceneError& e) {
-      return std::string(e.what());
-    }
-    return std::string("nothing");
+    return equations::thrown<SceneError>([&] { all_of(scene, hold); });
   };
   std::mt19937 random(4);
   std::vector<Line> lines = any_lines(random, 6);

@@ -3,6 +3,7 @@
 
 #include "equations/assembled_linkages.h"
 #include "equations/parts.h"
+#include "equations/refusal.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kinematics/move.h>
@@ -186,12 +187,7 @@ TEST(TransmissionAngle, OfAnOutputMovedByATernaryLink) {
 TEST(TransmissionAngle, IsRefusedWhereNothingIsTransmitted) {
   const Scene scene = four_bar(1, 2, 1.8, 2.2, 1, false);
   const auto says = [&](const std::string& output) {
-    try {
-      moved(scene, "O", output);
-    } catch (const SceneError& e) {
-      return std::string(e.what());
-    }
-    return std::string("nothing");
+    return equations::thrown<SceneError>([&] { moved(scene, "O", output); });
   };
   EXPECT_NE(says("O").find("is swept or held"), std::string::npos) << says("O");
   EXPECT_NE(says("X").find("'X' is not known"), std::string::npos) << says("X");

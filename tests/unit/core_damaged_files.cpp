@@ -1,6 +1,7 @@
 // Damaged bytes of meshes and of robots' files, cut short or with bits turned over: each gives a
 // mesh or a scene, or one sentence; and what is too large is refused before it is read.
 
+#include "equations/refusal.h"
 #include "equations/scene_folder.h"
 
 #include <momenta/core/scene/mesh/mesh_mass.h>
@@ -158,12 +159,7 @@ TEST_F(DamagedModels, TooLargeIsRefusedUnread) {
   std::filesystem::resize_file(file, 1UL << 30U);  // a hole, which takes no room
   const auto start = std::chrono::steady_clock::now();
   const auto refused_mesh = [](const std::filesystem::path& path) {
-    try {
-      static_cast<void>(reading::read_mesh(path));
-    } catch (const SceneError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return equations::thrown<SceneError>([&] { static_cast<void>(reading::read_mesh(path)); });
   };
   EXPECT_NE(refused_mesh(file).find("64 MiB"), std::string::npos) << refused_mesh(file);
   std::string head = msh();

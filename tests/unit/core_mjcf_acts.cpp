@@ -9,6 +9,8 @@
 #include <numbers>
 #include <random>
 
+#include "equations/refusal.h"
+
 namespace momenta::core_mjcf_acts {
 namespace {
 
@@ -42,12 +44,9 @@ class MjcfActs : public testing::Test {
   }
   void expect_refused(const std::string& sentence, const std::string& joint,
                       const std::string& after = "", const Strings& controls = {}) const {
-    try {
-      scene(joint, after, controls);
-      FAIL() << "read, expected: " << sentence;
-    } catch (const SceneError& e) {
-      EXPECT_NE(std::string(e.what()).find(sentence), std::string::npos) << e.what();
-    }
+    EXPECT_TRUE(equations::says(
+        equations::thrown<SceneError>([&] { scene(joint, after, controls); }), sentence))
+        << "read, expected: " << sentence;
   }
   fs::path file_;
 };

@@ -1,6 +1,7 @@
 // <keyframe>: a key's state as the start.
 
 #include "equations/model_folder.h"
+#include "equations/refusal.h"
 
 namespace momenta::core_mjcf_keys {
 namespace {
@@ -105,13 +106,11 @@ TEST_F(MjcfKeys, WrongKeys) {
           ":2: key: <key> ctrl has 2 numbers, expected 1 for the actuators of the model");
   ReadOptions options;
   options.key = "home";
-  for (const char* other : {"r.urdf", "s.toml"}) try {
-      read_scene(write(other, "<robot name='r'><link name='a'/></robot>"), options);
-      ADD_FAILURE();
-    } catch (const SceneError& error) {
-      EXPECT_NE(std::string(error.what()).find("no MJCF, expected one where a key is given"),
-                std::string::npos);
-    }
+  for (const char* other : {"r.urdf", "s.toml"})
+    EXPECT_TRUE(equations::says(
+        equations::thrown<SceneError>(
+            [&] { read_scene(write(other, "<robot name='r'><link name='a'/></robot>"), options); }),
+        "no MJCF, expected one where a key is given"));
 }
 
 }  // namespace
