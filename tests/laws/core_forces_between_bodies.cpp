@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/body_forces.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/tree/tree.h>
 
 #include <string>

@@ -5,14 +5,12 @@
 #include "equations/examples.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/solver/bdf_step.h>
 #include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
-#include <filesystem>
 
 namespace momenta::dae_bdf5_stiffness {
 namespace {

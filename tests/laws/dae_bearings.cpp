@@ -18,8 +18,6 @@
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
-
 namespace momenta::dae_bearings {
 namespace {
 

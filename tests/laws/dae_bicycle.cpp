@@ -5,7 +5,6 @@
 #include "equations/rolling.h"
 #include "equations/runs.h"
 
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/study/modes_study.h>
@@ -14,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <filesystem>
 
 namespace momenta::dae_bicycle {
 namespace {

@@ -5,7 +5,6 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/tree_order.h>

@@ -9,10 +9,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/run_form.h>
-
-#include <filesystem>
 
 namespace momenta::dae_cut_anywhere {
 namespace {

@@ -6,12 +6,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace momenta::dae_drift_growth {
 namespace {

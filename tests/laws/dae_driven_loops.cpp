@@ -12,11 +12,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
 #include <numbers>
 
 namespace momenta::dae_driven_loops {

@@ -10,7 +10,6 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/effort/effort.h>
 #include <momenta/dae/study/run_form.h>

@@ -19,7 +19,6 @@
 #include "equations/runs.h"
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 
 namespace momenta::dae_energy_momentum {

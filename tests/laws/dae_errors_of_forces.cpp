@@ -10,7 +10,6 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/measure/reactions.h>
 #include <momenta/dae/study/force_columns.h>
@@ -20,7 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 namespace momenta::dae_errors_of_forces {

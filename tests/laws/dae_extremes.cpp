@@ -18,7 +18,6 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
-#include <filesystem>
 #include <random>
 
 namespace momenta::dae_extremes {

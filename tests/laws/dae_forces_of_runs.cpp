@@ -24,7 +24,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 namespace momenta::dae_forces_of_runs {

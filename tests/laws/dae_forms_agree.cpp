@@ -10,10 +10,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/run_form.h>
-
-#include <filesystem>
 
 namespace momenta::dae_forms_agree {
 namespace {

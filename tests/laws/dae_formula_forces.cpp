@@ -22,8 +22,6 @@
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
-
 namespace momenta::dae_formula_forces {
 namespace {
 

@@ -11,11 +11,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
 #include <numbers>
 
 namespace momenta::dae_further_forms {

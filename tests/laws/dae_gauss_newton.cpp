@@ -6,7 +6,6 @@
 //                            the same steps to rounding, so order, energy and gauge stay as they are
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/ode_slopes.h>
@@ -21,7 +20,6 @@
 #include "equations/tolerance.h"
 
 #include <complex>
-#include <filesystem>
 
 namespace momenta::dae_gauss_newton {
 namespace {

@@ -11,14 +11,12 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/study/index_study.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
 #include <random>
 
 namespace momenta::dae_index {

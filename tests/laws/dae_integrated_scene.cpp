@@ -8,7 +8,6 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/cut/integrated_scene.h>

@@ -19,7 +19,6 @@
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
 #include <random>
 
 namespace momenta::dae_lagrangian {

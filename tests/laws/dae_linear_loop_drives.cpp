@@ -10,7 +10,6 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/linear/linear_model.h>
@@ -19,7 +18,6 @@
 
 #include <Eigen/Dense>
 #include <complex>
-#include <filesystem>
 
 namespace momenta::dae_linear_loop_drives {
 namespace {

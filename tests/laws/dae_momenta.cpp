@@ -8,12 +8,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/study/run_form.h>
-
-#include <filesystem>
 
 namespace momenta::dae_momenta {
 namespace {

@@ -9,13 +9,11 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/bdf_step.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <random>
 

@@ -8,14 +8,12 @@
 // Differential Equations I, II.1.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/report/part_file.h>

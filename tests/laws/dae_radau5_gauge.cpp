@@ -8,13 +8,11 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
-#include <filesystem>
 
 namespace momenta::dae_radau5_gauge {
 namespace {

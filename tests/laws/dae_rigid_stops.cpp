@@ -13,7 +13,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <random>
 

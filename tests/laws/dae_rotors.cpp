@@ -9,13 +9,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/study/state_values.h>
-
-#include <filesystem>
 
 namespace momenta::dae_rotors {
 namespace {

@@ -13,7 +13,6 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numbers>
 
 namespace momenta::dae_singular_everywhere {

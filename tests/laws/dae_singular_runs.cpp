@@ -10,13 +10,11 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/solver/integration.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <numbers>
 
 namespace momenta::dae_singular_runs {

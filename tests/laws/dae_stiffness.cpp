@@ -8,7 +8,6 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/solver/stiffness.h>
 #include <momenta/dae/solver/tableau_dop853.h>
 #include <momenta/dae/solver/tableau_dp5.h>
@@ -16,7 +15,6 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
-#include <filesystem>
 
 namespace momenta::dae_stiffness {
 namespace {

@@ -7,7 +7,6 @@
 // S by central differences, the slow and obvious way.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -17,7 +16,6 @@
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 
-#include <filesystem>
 #include <numbers>
 #include <numeric>
 

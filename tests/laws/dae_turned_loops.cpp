@@ -18,13 +18,11 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/displacement_of_mass.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/study/run_form.h>
 
-#include <filesystem>
 #include <functional>
 #include <numbers>
 

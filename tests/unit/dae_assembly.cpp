@@ -16,7 +16,6 @@
 
 #include <Eigen/SVD>
 
-#include <filesystem>
 #include <numbers>
 #include <random>
 

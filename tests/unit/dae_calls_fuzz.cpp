@@ -7,7 +7,6 @@
 #include "equations/wild.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -16,7 +15,6 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <cstdlib>
-#include <filesystem>
 
 namespace momenta::dae_calls_fuzz {
 namespace {

@@ -10,11 +10,8 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
-
-#include <filesystem>
 
 namespace momenta::dae_carried_rows {
 namespace {

@@ -9,11 +9,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/chain/closed_chain.h>
 
 #include <cmath>
-#include <filesystem>
 
 namespace momenta::dae_closed_chain {
 namespace {

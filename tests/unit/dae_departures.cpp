@@ -6,7 +6,6 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/study/departures.h>

@@ -7,7 +7,6 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/csv.h>
@@ -19,7 +18,6 @@
 #include <unit/page/synthetic_study.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <sstream>
 
 namespace momenta::dae_drift_units {

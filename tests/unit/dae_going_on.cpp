@@ -6,13 +6,11 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/study/run_record.h>
 
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <random>
 

@@ -10,7 +10,6 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/solver/local_newton.h>

@@ -9,7 +9,6 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/spectrum.h>
@@ -21,7 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 namespace momenta::dae_loop_rank {

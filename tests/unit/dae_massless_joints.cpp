@@ -21,7 +21,6 @@
 #include <momenta/dae/study/state_values.h>
 
 #include <Eigen/SVD>
-#include <filesystem>
 
 namespace momenta::dae_massless_joints {
 namespace {

@@ -11,7 +11,6 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/measure/rank.h>

@@ -7,12 +7,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/measure/reactions.h>
-
-#include <filesystem>
 
 namespace momenta::dae_rank {
 namespace {

@@ -7,7 +7,6 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/stress_study.h>

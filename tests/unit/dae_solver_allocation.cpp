@@ -7,14 +7,12 @@
 #include "equations/examples.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/integrators.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <new>
 
 #if !defined(__SANITIZE_ADDRESS__)

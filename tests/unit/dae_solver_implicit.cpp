@@ -2,7 +2,6 @@
 // generalised-alpha and bayo-ledesma; matrices dense and sparse.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/newton_matrix.h>
@@ -16,7 +15,6 @@
 #include "equations/runs.h"
 #include "equations/tolerance.h"
 
-#include <filesystem>
 #include <random>
 
 namespace momenta::dae_solver_implicit {

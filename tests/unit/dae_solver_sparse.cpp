@@ -2,7 +2,6 @@
 // rounding makes of it.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/newton_matrix.h>
@@ -14,8 +13,6 @@
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/tolerance.h"
-
-#include <filesystem>
 
 namespace momenta::dae_solver_sparse {
 namespace {

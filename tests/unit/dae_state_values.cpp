@@ -9,12 +9,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/study/state_values.h>
-
-#include <filesystem>
 
 namespace momenta::dae_state_values {
 namespace {

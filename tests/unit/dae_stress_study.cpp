@@ -1,8 +1,8 @@
-#include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/report/stress_report.h>
+// The study under extremes: which forms survive each ladder, which are wrong in silence, which are
+// slow and why; what it counts, and that neither threads nor an interruption change what it has.
 
-#include <filesystem>
+#include <gtest/gtest.h>
+#include <momenta/dae/report/stress_report.h>
 
 #include "equations/examples.h"
 

@@ -5,7 +5,6 @@
 #include "equations/examples.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/form/form.h>
