@@ -13,7 +13,7 @@ UniqueMultipliers::UniqueMultipliers(const Mechanism& mechanism, Evaluation<doub
     : mechanism_(mechanism),
       e_(e),
       solver_(solver),
-      tells_(mechanism.solver().kkt() == KktChoice::sweeps || mechanism.solver().filters_pivots()),
+      tells_(mechanism.solver().filters_pivots()),
       centre_(static_cast<std::size_t>(mechanism.m())),
       moved_(centre_.size()),
       udot_(static_cast<std::size_t>(mechanism.nv())),

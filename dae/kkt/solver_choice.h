@@ -17,7 +17,8 @@ namespace momenta {
 /// How (7) is solved for one mechanism, which must outlive it.
 class SolverChoice {
  public:
-  /// @throws SceneError where the options of the mechanism ask for a way that does not solve (7).
+  /// One solution of (7), up to some thirty where masses are far apart. @throws SceneError where
+  /// the options of the mechanism ask for a way that does not solve (7)
   explicit SolverChoice(const Mechanism& mechanism);
   ~SolverChoice();
   SolverChoice(const SolverChoice&) = delete;
@@ -30,11 +31,9 @@ class SolverChoice {
   /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
   /// that point, and a solution so made is right to most_leaves_first_error.
   bool leaves_first() const { return light_.empty(); }
-  /// Whether the matrix of make_kkt() has a pivot for each row of Φ, which can fade and be
-  /// reported: KLU has none.
+  /// Whether the sweeps, or else the matrix of make_kkt(), have a pivot for each row of Φ, which
+  /// can fade and be reported: KLU has none. Sweeps are chosen only where leaves_first().
   bool filters_pivots() const { return dense_ || leaves_first(); }
-  /// Why the sweeps do not carry the loops; empty where they do.
-  const std::string& reason() const { return reason_; }
 
   /// The sweeps that carry the loops, for one instruction level; 0: the machine's best.
   /// `branches_side_by_side`: for one state, spatial sweeps take folded branches of one shape in
@@ -61,15 +60,16 @@ class SolverChoice {
   std::unique_ptr<Plans> plans_;  ///< without loops or bodies: none
   bool dense_;
   KktChoice kkt_ = KktChoice::dense;
-  std::string reason_;
-  std::string light_;  ///< which joint has too little inertia before its loops close, or empty
+  std::string reason_;  ///< why the sweeps do not carry the loops; empty where they do
+  std::string light_;   ///< which joint has too little inertia before its loops close, or empty
 };
 
 /// Whether the sparse matrix is that of the bodies' equations: the joints' equations cost more
 /// where bodies are on average more than 40 joints from the ground. O(bodies)
 bool solved_by_bodies(const Mechanism& mechanism);
 
-/// Lines of the plan, of core and of the loops: what they are about, and how it is done.
+/// Lines of the plan, of core and of the loops: what each is about, and how it is computed. Cost
+/// and errors of Mechanism::solver().
 std::vector<std::pair<std::string, std::string>> plan_lines(const Mechanism& mechanism);
 
 }  // namespace momenta

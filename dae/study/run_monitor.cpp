@@ -51,8 +51,7 @@ RunMonitor::RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene,
   } else if (mechanism.m() > 0 && !stops && (compares_forces || request.multipliers)) {
     errors_.measure_own(form);
   }
-  if (integrated.m() > 0 && !stops &&
-      (integrated.solver().kkt() == KktChoice::sweeps || integrated.solver().filters_pivots()))
+  if (integrated.m() > 0 && !stops && integrated.solver().filters_pivots())
     singular_crossings_.emplace(integrated, form, written_ ? *integrated_e_ : *e_,
                                 written_ ? *integrated_solver_ : *solver_, result);
   const bool looks = request.events && !mechanism.scene().events.empty();

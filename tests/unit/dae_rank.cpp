@@ -98,6 +98,11 @@ TEST(Rank, BricardHasOneEquationTooManyWhereverItGoes) {
     EXPECT_FALSE(r.dependencies[0].only_here);
     EXPECT_NE(in_words(mechanism, r.dependencies[0]).find("loop 'P6' row"), std::string::npos);
     expect_true(mechanism, r);
+    // A loop ties as much with a row less, whichever its axes are.
+    ASSERT_EQ(r.simpler.size(), 1u);
+    EXPECT_EQ(r.simpler[0].loop, "P6");
+    EXPECT_EQ(r.simpler[0].kind, "cylindrical");
+    EXPECT_EQ(r.simpler[0].fewer, 1);
   }
 }
 
