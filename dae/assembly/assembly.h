@@ -2,7 +2,8 @@
 // A consistent start from the scene's guess: positions, then velocities, then accelerations and
 // multipliers.
 
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/start.h>
 
 #include <string>
 #include <utility>

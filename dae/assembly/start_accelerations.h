@@ -1,6 +1,7 @@
 #pragma once
 
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/start.h>
 
 #include <string>
 

@@ -14,7 +14,8 @@
 // joints are others, as remarks of the new scene tell.
 
 #include <momenta/dae/cut/cut_cost.h>
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/start.h>
 
 #include <memory>
 #include <string>

@@ -4,7 +4,8 @@
 #include <momenta/core/poses.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/turned_round.h>
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/start.h>
 
 #include <set>
 #include <string>

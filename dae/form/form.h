@@ -5,6 +5,7 @@
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/system.h>
+#include <momenta/dae/start.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -44,17 +45,6 @@ struct FormOptions {
   double baumgarte_beta = 0;   ///< [1/s]
   double beta = 0;     ///< momentum forms: Φ̇ = −βΦ in the second row of (7) [1/s]; 0: none
   double penalty = 0;  ///< augmented Lagrangians: α in effective masses of the loops; 0: 1e7
-};
-
-/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0. Redundant equations whose numbers contradict
-/// each other are met in the least-squares sense.
-struct Start {
-  double t = 0;             ///< [s]
-  Eigen::VectorXd q;        ///< nq
-  Eigen::VectorXd u;        ///< nv
-  Eigen::VectorXd udot;     ///< accelerations there: nv
-  Eigen::VectorXd lambda;   ///< force multipliers there: m
-  Eigen::VectorXd residue;  ///< Φ that contradictions leave (m); empty: none
 };
 
 /// q, u and multipliers read back from a form's state: σ of momentum forms, λ of the others.

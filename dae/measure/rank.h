@@ -7,7 +7,8 @@
 // Walks of several steps of a tenth of a radian reach nearby poses, along the mechanism's own
 // velocities and along random ones that loops allow, each step brought back to Φ = 0.
 
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/start.h>
 #include <momenta/dae/kkt/loop_rank.h>
 
 #include <string>

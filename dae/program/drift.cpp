@@ -1,3 +1,4 @@
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>

@@ -1,6 +1,7 @@
 #include "stress_ladders.h"
 
 #include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #include "run_arguments.h"
 
+#include <momenta/dae/form/form.h>
+
 #include <cmath>
 
 namespace momenta::python {

@@ -10,6 +10,7 @@
 // The second bound is what the Newton iterations and the interpolants between steps leave, with a
 // margin; beyond it a form no longer holds Φ = 0.
 
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/integrators.h>

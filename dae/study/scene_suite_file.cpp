@@ -3,6 +3,7 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/toml/fields.h>
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/scene_suite.h>
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/integrators.h>

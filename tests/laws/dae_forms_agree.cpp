@@ -10,6 +10,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/study/run_form.h>
 
 namespace momenta::dae_forms_agree {

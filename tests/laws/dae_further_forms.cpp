@@ -11,6 +11,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_form.h>
 

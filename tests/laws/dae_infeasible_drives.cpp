@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/assembly/drive_reach.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/study/run_form.h>
 

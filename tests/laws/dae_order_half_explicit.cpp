@@ -11,6 +11,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/tableau_hem5.h>
 #include <momenta/dae/study/run_form.h>

@@ -8,6 +8,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_form.h>
 

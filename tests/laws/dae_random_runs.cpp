@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_form.h>
 

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/solver/integration.h>
 

@@ -7,6 +7,7 @@
 // S by central differences, the slow and obvious way.
 
 #include <gtest/gtest.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/study/run_form.h>
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/integrators.h>
 

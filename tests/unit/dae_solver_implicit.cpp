@@ -2,6 +2,7 @@
 // generalised-alpha and bayo-ledesma; matrices dense and sparse.
 
 #include <gtest/gtest.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/newton_matrix.h>
