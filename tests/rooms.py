@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Draws the graph of includes between the folders of core and dae, and compares it with docs/reference/rooms.md;
-looks for two types of one name in headers, that linkers would take for one.
+"""Draws the graph of includes between the rooms of core and dae, their folders, and compares it with
+docs/reference/rooms.md; looks for circles between the folders of a room, for files outside rooms, and for two types of one
+name in headers, that linkers would take for one.
 
     tests/rooms.py [TOP]
 
@@ -19,8 +20,13 @@ TYPE = re.compile(r"^(?:namespace ([\w:]+) \{|(?:struct|class|enum|enum class) (
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^">]+)[">]', re.MULTILINE)
 
 
-def arrows(top):
-    """{(room, room): [(file, file), …]} of all includes that cross from one folder to another."""
+def room_of(folder):
+    """The room of a folder: what stands directly in core or dae."""
+    return "/".join(folder.split("/")[:2])
+
+
+def arrows(top, place=room_of):
+    """{(room, room): [(file, file), …]} of all includes that cross from one room to another, or one folder."""
     found = {}
     for part in ("core", "dae"):
         for file in sorted((top / part).rglob("*")):
@@ -30,10 +36,23 @@ def arrows(top):
                 aim = top / name.removeprefix("momenta/") if name.startswith("momenta/") else file.parent / name
                 if not aim.is_file():
                     continue  # a library's
-                a, b = (p.parent.relative_to(top).as_posix() for p in (file, aim.resolve()))
+                a, b = (place(p.parent.relative_to(top).as_posix()) for p in (file, aim.resolve()))
                 if a != b:
                     found.setdefault((a, b), []).append((file.relative_to(top), aim.resolve().relative_to(top)))
     return found
+
+
+def circles(top):
+    """Folders that need themselves by way of others."""
+    found = arrows(top, lambda folder: folder)
+    below = {a: {d for c, d in found if c == a} for pair in found for a in pair}
+    return sorted(folder for folder in below if folder in reached(folder, below))
+
+
+def loose(top):
+    """Sources outside rooms."""
+    return [f"{part}/{file.name}" for part in ("core", "dae") for file in sorted((top / part).glob("*"))
+            if file.suffix in (".h", ".cpp")]
 
 
 def namesakes(top):
@@ -72,12 +91,18 @@ def reached(room, below):
     return seen
 
 
-def picture(rooms, drawn):
-    """The layers as SVG. @pre no circle, rooms in their order"""
-    below = {room: {b for a, b in drawn if a == room} for room in rooms}
+def depths(rooms, below):
+    """The layer of each room, from 0. @pre no circle, rooms in their order"""
     depth = {}
     for room in rooms:  # what it includes stands before it
         depth[room] = 1 + max((depth[b] for b in below[room]), default=-1)
+    return depth
+
+
+def picture(rooms, drawn):
+    """The layers as SVG. @pre as of depths"""
+    below = {room: {b for a, b in drawn if a == room} for room in rooms}
+    depth = depths(rooms, below)
     high, gap, letter, step = 26, 18, 7.4, 62
     layers = [[r for r in rooms if depth[r] == k] for k in range(max(depth.values()) + 1)]
     wide = {room: letter * len(room) + 18 for room in rooms}
@@ -132,11 +157,14 @@ def main():
             faults.append(f"'{a}' → '{b}': {example}, against the order of {DRAWING}; expected '{b}' above '{a}'")
     faults += [f"'{a}' → '{b}' is in {DRAWING}; no file includes so" for a, b in sorted(drawn - set(found))]
     faults += [f"'{room}' has no row in {DRAWING}" for room in sorted({a for pair in found for a in pair} - set(rooms))]
+    faults += [f"folder '{folder}' needs itself by way of others; expected no circle" for folder in circles(top)]
+    faults += [f"{name} is in no room; expected a folder" for name in loose(top)]
     faults += [f"{name} is defined in {' and in '.join(files)}" for name, files in namesakes(top)]
     file = top / PICTURE
     if not faults and (not file.is_file() or file.read_text(encoding="utf-8") != picture(rooms, drawn)):
         faults.append(f"{PICTURE} is not the picture of {DRAWING}; expected that of tests/rooms.py --svg")
-    print("\n".join([*faults, f"{len(rooms)} rooms, {len(found)} arrows, {len(faults)} faults"]))
+    layers = "" if faults else f" in {1 + max(depths(rooms, {r: {b for a, b in drawn if a == r} for r in rooms}).values())} layers"
+    print("\n".join([*faults, f"{len(rooms)} rooms{layers}, {len(found)} arrows, {len(faults)} faults"]))
     return 1 if faults or not found else 0
 
 

@@ -6,7 +6,7 @@
 #include <momenta/core/kernel/joint_stop.h>
 #include <momenta/core/kernel/planar.h>
 #include <momenta/core/kernel/spatial.h>
-#include <momenta/core/tree/tree.h>
+#include <momenta/core/kernel/tree/tree.h>
 
 #include <array>
 #include <memory>

@@ -5,7 +5,7 @@
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/sweeps.h>
-#include <momenta/core/tree/tree.h>
+#include <momenta/core/kernel/tree/tree.h>
 
 #include <type_traits>
 

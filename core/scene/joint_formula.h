@@ -4,7 +4,7 @@
 
 namespace momenta {
 
-/// The formula of a user joint, immutable; made as a UserJoint (core/user_joint.h).
+/// The formula of a user joint, immutable; made as a UserJoint (core/open_chain/user_joint.h).
 class JointFormula {
  public:
   virtual ~JointFormula() = default;

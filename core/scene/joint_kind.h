@@ -6,8 +6,8 @@
 // A tree has fewer kinds: cylindrical, universal and planar joints, and fully driven spherical and
 // free joints, become chains of revolute and prismatic joints with massless bodies between them. So
 // E is constant in body axes, and q, p, q̇, ṗ are those of the whole joint. A user joint is a
-// formula of a program (core/user_joint.h), which says how many coordinates it has; its E varies in
-// body axes.
+// formula of a program (core/open_chain/user_joint.h), which says how many coordinates it has; its
+// E varies in body axes.
 
 #include <cstddef>
 
@@ -24,7 +24,7 @@ enum class JointKind {
   planar,
   free,  ///< all six degrees of freedom
   weld,  ///< no degree of freedom
-  user   ///< a formula of the program: core/user_joint.h
+  user   ///< a formula of the program: core/open_chain/user_joint.h
 };
 
 /// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free; 0 for

@@ -13,7 +13,7 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/form_entry.h>
 #include <momenta/dae/form/penalty.h>
-#include <momenta/dae/solver/system.h>
+#include <momenta/dae/integrator/system.h>
 
 namespace momenta {
 namespace {

@@ -3,7 +3,7 @@
 // u; for quaternions one step of the classical Runge-Kutta method, fourth order in δ, normalised to
 // unit length.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -4,9 +4,9 @@
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/kkt/unheld_joints.h>
-#include <momenta/dae/loop/loop_weights.h>
-#include <momenta/dae/mechanism.h>
-#include <momenta/dae/tree_factor.h>
+#include <momenta/dae/mechanism/loop/loop_weights.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/mechanism/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>

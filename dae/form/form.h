@@ -3,9 +3,9 @@
 // all forms share: their options, the start they take, and how their state is read back as q, u and
 // multipliers for the measures.
 
-#include <momenta/dae/mechanism.h>
-#include <momenta/dae/solver/system.h>
-#include <momenta/dae/start.h>
+#include <momenta/dae/integrator/system.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/mechanism/start.h>
 
 #include <Eigen/Core>
 #include <algorithm>

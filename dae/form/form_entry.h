@@ -13,8 +13,8 @@
 namespace momenta {
 
 /// A constraint, in the order in which differentiation finds them. The number of its equations
-/// comes independently from the derivative array (dae/measure/derivative_array.h); a test compares
-/// the two counts.
+/// comes independently from the derivative array (dae/run/measure/derivative_array.h); a test
+/// compares the two counts.
 struct Constraint {
   enum class Origin {
     given,     ///< stands in the equations, ν = 0

@@ -1,7 +1,7 @@
 #include <momenta/dae/form/acceleration_form.h>
 #include <momenta/dae/form/half_explicit_parts.h>
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <algorithm>

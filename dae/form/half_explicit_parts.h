@@ -4,10 +4,10 @@
 // side of the ODE form; SplitKkt solves for the z that lead onto the constraint at the next stage.
 
 #include <momenta/dae/form/natural_sizes.h>
+#include <momenta/dae/integrator/half_explicit.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/split_kkt.h>
-#include <momenta/dae/solver/half_explicit.h>
 
 #include <memory>
 #include <string>

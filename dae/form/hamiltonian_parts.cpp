@@ -1,8 +1,8 @@
-#include <momenta/core/lagrangian/lagrangian_model.h>
+#include <momenta/core/scene/lagrangian/lagrangian_model.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/unheld_joints.h>
-#include <momenta/dae/tree_factor.h>
+#include <momenta/dae/mechanism/tree_factor.h>
 
 #include <algorithm>
 

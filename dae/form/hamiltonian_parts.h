@@ -5,7 +5,7 @@
 // first use.
 
 #include <momenta/dae/form/coordinate_motion.h>
-#include <momenta/dae/solver/constrained_hamiltonian.h>
+#include <momenta/dae/integrator/constrained_hamiltonian.h>
 
 #include <memory>
 

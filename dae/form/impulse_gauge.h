@@ -1,10 +1,10 @@
 #pragma once
 // The gauge symmetry of the DAE forms in q, p and σ, as methods use it: resets, shifts of past
-// values, and the norm of what moves (dae/solver/gauge_symmetry.h).
+// values, and the norm of what moves (dae/integrator/gauge_symmetry.h).
 
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/natural_sizes.h>
-#include <momenta/dae/solver/gauge_symmetry.h>
+#include <momenta/dae/integrator/gauge_symmetry.h>
 
 #include <memory>
 #include <vector>

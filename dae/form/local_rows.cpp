@@ -1,7 +1,7 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/local_rows.h>
-#include <momenta/dae/solver/system.h>
+#include <momenta/dae/integrator/system.h>
 
 #include <algorithm>
 #include <cmath>

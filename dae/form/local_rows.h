@@ -8,7 +8,7 @@
 // reaches, directly or through rows of z.
 
 #include <momenta/core/scalar/local_dual.h>
-#include <momenta/dae/solver/system.h>
+#include <momenta/dae/integrator/system.h>
 
 #include <vector>
 

@@ -16,7 +16,7 @@
 #include <momenta/dae/gradient/form_adjoint.h>
 #include <momenta/dae/gradient/functional.h>
 #include <momenta/dae/gradient/recorded_run.h>
-#include <momenta/dae/solver/butcher_tableau.h>
+#include <momenta/dae/integrator/butcher_tableau.h>
 
 #include <functional>
 

@@ -3,7 +3,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/gradient/differentiable.h>
 #include <momenta/dae/gradient/form_tangents.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/integrators.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -2,8 +2,8 @@
 // Forms, methods and sizes that have a gradient, mechanisms that have an adjoint, and what of a
 // scene is not smooth, in words.
 
-#include <momenta/dae/mechanism.h>
-#include <momenta/dae/study/run_result.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/run/run_result.h>
 
 #include <string>
 #include <vector>

@@ -11,7 +11,7 @@
 #include <momenta/core/expression/expression.h>
 #include <momenta/dae/gradient/row_derivatives.h>
 #include <momenta/dae/gradient/run_variable.h>
-#include <momenta/dae/linear/marker_motion.h>
+#include <momenta/dae/mechanism/marker_motion.h>
 
 #include <memory>
 #include <string>

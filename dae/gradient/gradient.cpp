@@ -1,6 +1,5 @@
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/event/scene_inputs.h>
+#include <momenta/core/text/number_text.h>
 #include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/differentiable.h>
@@ -9,10 +8,11 @@
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_adjoint.h>
 #include <momenta/dae/gradient/tangent_system.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/form_runner.h>
-#include <momenta/dae/study/run_form.h>
-#include <momenta/dae/text/number_text.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/event/scene_inputs.h>
+#include <momenta/dae/run/form_runner.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <cmath>

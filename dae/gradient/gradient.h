@@ -17,7 +17,7 @@
 // depends on θ are refused. The mechanism is integrated as written.
 
 #include <momenta/dae/gradient/run_variable.h>
-#include <momenta/dae/study/run_result.h>
+#include <momenta/dae/run/run_result.h>
 
 #include <functional>
 #include <string>

@@ -2,9 +2,9 @@
 #include <momenta/core/expression/jumps.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
+#include <momenta/core/text/number_text.h>
 #include <momenta/dae/gradient/law_jumps.h>
 #include <momenta/dae/gradient/linear_formulas.h>
-#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>

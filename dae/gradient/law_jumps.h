@@ -8,7 +8,7 @@
 // the half that changes more: a continuous force changes less and less.
 
 #include <momenta/core/scene/drive.h>
-#include <momenta/dae/event/event_values.h>
+#include <momenta/dae/run/event/event_values.h>
 
 #include <functional>
 #include <memory>

@@ -11,7 +11,7 @@
 // −τ s_q(q + ε u): the first as values, the second as derivatives. Along a joint s_qq = 0, and
 // Q_u is diagonal; of dampers it is constant.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <memory>

@@ -1,5 +1,5 @@
-#include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/gradient/metric_system.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
 
 namespace momenta {
 

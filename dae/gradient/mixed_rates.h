@@ -6,7 +6,7 @@
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/gradient/levels/mixed_sweep.h>
 #include <momenta/dae/gradient/momentum_rows.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <memory>
 

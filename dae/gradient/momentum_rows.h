@@ -6,7 +6,7 @@
 // and of a position correction, at x = (q, δ, ν): M δ + Φ_qᵀν, Φ_q δ + Φ; and the derivatives of L*
 // = T − V + σᵀΦ̇ by u and q, without forces that have no potential.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/dae/gradient/run_variable.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -19,7 +19,7 @@
 // Derivation: docs/theory/gradients.md, section 7.
 
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <memory>

@@ -1,4 +1,4 @@
-#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/dae/gradient/numbers_alone.h>
 
 #include <algorithm>

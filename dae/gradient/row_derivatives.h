@@ -7,7 +7,7 @@
 // other θ_j at the same x (neighbours.h), whose formulas are linear in θ_j (linear_formulas.h).
 
 #include <momenta/dae/gradient/neighbours.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <algorithm>

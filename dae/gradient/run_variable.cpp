@@ -1,4 +1,4 @@
-#include <momenta/core/scene/toml/number_at.h>
+#include <momenta/core/format/toml/number_at.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/kkt/loop_units.h>

@@ -1,8 +1,8 @@
 #pragma once
 // Numbers that a run depends on: parameters of the scene, and guesses of its start.
 
-#include <momenta/core/scene/toml/setting.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/core/format/toml/setting.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <memory>
 #include <string>
@@ -38,7 +38,7 @@ struct SceneText {
 
 /// Variables by name: a parameter, "a" or "parameters.a"; a coordinate or rate, as in the header of
 /// trajectory.csv, but no part of a quaternion; any other number by its place
-/// (core/scene/toml/setting.h). @throws std::invalid_argument: one sentence on a name that is
+/// (core/format/toml/setting.h). @throws std::invalid_argument: one sentence on a name that is
 /// unknown, or comes twice
 std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& mechanism,
                                        const std::vector<std::string>& names);

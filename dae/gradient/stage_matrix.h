@@ -9,7 +9,7 @@
 // decomposition: x is unique, y the shortest.
 
 #include <momenta/dae/kkt/klu_solver.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/LU>
 #include <Eigen/QR>

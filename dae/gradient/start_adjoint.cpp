@@ -1,11 +1,11 @@
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/assembly/scaled_loops.h>
 #include <momenta/dae/gradient/drive_slopes.h>
 #include <momenta/dae/gradient/stage_matrix.h>
 #include <momenta/dae/gradient/start_adjoint.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/assembly/scaled_loops.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,14 +4,14 @@
 // σ. Differences of sixth order (sixth_order.h); loops are closed to rounding on both sides, which
 // leaves 12 digits.
 
-#include <momenta/dae/assembly/closing.h>
-#include <momenta/dae/dense/least_squares.h>
+#include <momenta/dae/algebra/dense/least_squares.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/gradient/mixed_rates.h>
 #include <momenta/dae/gradient/number_slopes.h>
 #include <momenta/dae/gradient/other_parameters.h>
 #include <momenta/dae/gradient/row_derivatives.h>
 #include <momenta/dae/gradient/run_variable.h>
+#include <momenta/dae/topology/assembly/closing.h>
 
 #include <deque>
 

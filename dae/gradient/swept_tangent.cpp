@@ -1,10 +1,10 @@
-#include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/gradient/levels/direction_sweeps.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/swept_tangent.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/SparseCore>
 #include <algorithm>

@@ -4,7 +4,7 @@
 // the machine (levels/tangent_sweeps.h, levels/direction_sweeps.h). O(bodies + m), no matrix; u, σ,
 // ṗ come along.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <memory>

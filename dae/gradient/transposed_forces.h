@@ -5,7 +5,7 @@
 // coordinate have diagonal ones: one evaluation. With others between points of bodies, the scalar
 // bᵀQ is differentiated by each coordinate and rate, eight at a time.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <memory>

@@ -1,8 +1,8 @@
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/dae/bearings.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/kkt/unheld_joints.h>
+#include <momenta/dae/mechanism/bearings.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // Deep trees: (7) by the equations of its bodies (body_matrix.h), whose entries grow like the
 // bodies, factorised by KLU (klu_solver.h). Pivots are not filtered, faded rows not known.
 
-#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/factor/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
 

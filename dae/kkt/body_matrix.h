@@ -12,9 +12,9 @@
 // ground in the plane.
 
 #include <momenta/core/kernel/sweeps.h>
-#include <momenta/dae/factor/body_fronts.h>
-#include <momenta/dae/loop/loop_rows.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/kkt/factor/body_fronts.h>
+#include <momenta/dae/mechanism/loop/loop_rows.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <vector>

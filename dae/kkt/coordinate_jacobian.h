@@ -3,7 +3,7 @@
 // taken coordinate by coordinate. With u = N(q) q̇ it is (Φ_q N; quaternions), Φ_q the matrix over
 // rates; without balls it is Φ_q itself.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <vector>

@@ -9,7 +9,7 @@
 // their own inertia: entries of A are compared per root of energy, not per rad or m, and light
 // coordinates depend on heavy ones.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 #include <suitesparse/klu.h>
 
 #include <Eigen/Dense>

@@ -3,11 +3,11 @@
 // In this order and form the error of u is about ε/δ near a pose where a singular value δ of Φ_q
 // M^(−1/2) vanishes, as small as any algorithm can make it: W squares the condition of σ, not of u.
 
-#include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/kkt/factor/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_matrix.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/tree_factor.h>
+#include <momenta/dae/mechanism/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>

@@ -6,10 +6,10 @@
 //
 // Where loop equations are redundant or the pose is singular, Φ_q loses rank: u stays well defined,
 // σ does not. Weak directions of σ therefore fade towards `centre` (σ at the start of the step):
-// see dense_kkt.cpp, dae/factor/filtered_factor.h, and klu_solver.h.
+// see dense_kkt.cpp, dae/kkt/factor/filtered_factor.h, and klu_solver.h.
 
-#include <momenta/dae/factor/faded_pivot.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <memory>
 #include <vector>

@@ -8,7 +8,7 @@
 // Beside entries of Φ_q what is light then is small, and goes after the loop that holds it; with M
 // as it is, a row of 1 kg would go before its loop, and take the digits of one of 10⁹ kg.
 
-#include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/kkt/factor/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
 

@@ -1,5 +1,5 @@
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/dense/least_squares.h>
+#include <momenta/dae/algebra/dense/least_squares.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <suitesparse/SuiteSparseQR.hpp>
 

@@ -1,8 +1,8 @@
-#include <momenta/dae/factor/axis_scale.h>
-#include <momenta/dae/factor/body_fronts.h>
-#include <momenta/dae/factor/faded_pivot.h>
-#include <momenta/dae/factor/filtered_factor.h>
 #include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/kkt/factor/axis_scale.h>
+#include <momenta/dae/kkt/factor/body_fronts.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
+#include <momenta/dae/kkt/factor/filtered_factor.h>
 #include <momenta/dae/kkt/leaves_first.h>
 #include <momenta/dae/kkt/solver_choice.h>
 

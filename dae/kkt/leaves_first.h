@@ -3,7 +3,7 @@
 // matrix of the joints' equations (factor/filtered_factor.h), or in deep trees that of the bodies'
 // (body_matrix.h) by fronts (factor/body_fronts.h).
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <functional>
 #include <memory>

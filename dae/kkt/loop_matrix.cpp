@@ -1,4 +1,4 @@
-#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
 #include <momenta/dae/kkt/loop_matrix.h>
 
 #include <algorithm>

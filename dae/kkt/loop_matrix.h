@@ -6,7 +6,7 @@
 // zero below. Solved around a centre, σ = centre + σ', only σ' fades, so a faded row keeps the
 // impulse it had at the step's start.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <vector>
 

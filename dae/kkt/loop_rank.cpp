@@ -1,5 +1,5 @@
-#include <momenta/dae/dense/least_squares.h>
-#include <momenta/dae/dense/singular_values.h>
+#include <momenta/dae/algebra/dense/least_squares.h>
+#include <momenta/dae/algebra/dense/singular_values.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 

@@ -2,7 +2,7 @@
 // The forms' interface to mechanisms with loops: the right-hand sides of (7)-(8) and (3), and
 // corrections of positions and velocities in the mass metric.
 //
-//   sweeps   the loops' impulses are eliminated inside the recursion           (dae/sweeps)
+//   sweeps   the loops' impulses are eliminated inside the recursion           (dae/kkt/sweeps)
 //   sparse   LDLᵀ of the assembled matrix of (7), or KLU            (sparse_kkt.cpp, klu_kkt.cpp)
 //   dense    Cholesky of M, pivoted LDLᵀ of the loops' matrix                  (dense_kkt.cpp)
 //

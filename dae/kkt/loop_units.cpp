@@ -1,4 +1,4 @@
-#include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/kkt/factor/axis_scale.h>
 #include <momenta/dae/kkt/loop_units.h>
 
 #include <algorithm>

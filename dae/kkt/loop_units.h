@@ -2,8 +2,8 @@
 // Units of rates and of loop equations: lengths of the scene, and radians. Scaled so, neither
 // depends on the units of the scene.
 
-#include <momenta/dae/loop/left_by_files.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/loop/left_by_files.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <vector>

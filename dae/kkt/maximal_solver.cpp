@@ -7,11 +7,11 @@
 // joints get no right-hand side. W as in dense_kkt.cpp.
 
 #include <momenta/core/kernel/accelerations.h>
-#include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/kkt/factor/axis_scale.h>
 #include <momenta/dae/kkt/loop_matrix.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/maximal_tree.h>
-#include <momenta/dae/loop/loop_rows.h>
+#include <momenta/dae/mechanism/loop/loop_rows.h>
 
 #include <algorithm>
 #include <cmath>

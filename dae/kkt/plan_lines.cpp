@@ -4,7 +4,7 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/link.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/model_data.h>
+#include <momenta/dae/mechanism/model_data.h>
 
 namespace momenta {
 namespace {

@@ -1,13 +1,13 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_joint.h>
-#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
 #include <momenta/dae/kkt/leaves_first.h>
 #include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/kkt/sweeps/branches/looped_branches.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/kkt/unheld_joints.h>
-#include <momenta/dae/model_data.h>
-#include <momenta/dae/sweeps/branches/looped_branches.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/mechanism/model_data.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // next to masses far apart eliminating joints before loops loses digits: so solutions at the start
 // and near it are tried, and their error measured (leaves_first.h).
 
-#include <momenta/dae/mechanism.h>
-#include <momenta/dae/sweeps/levels/looped_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/looped_sweeps.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <memory>
 #include <string>

@@ -8,8 +8,8 @@
 // No symmetry is left, so it is one LU: dense up to 60 unknowns, KLU above. ε, of redundant loops
 // alone, keeps it regular; s_0, the multiplier of the stage before, keeps what ε costs small.
 
-#include <momenta/dae/mechanism.h>
-#include <momenta/dae/solver/newton_matrix.h>
+#include <momenta/dae/integrator/newton_matrix.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <array>
 #include <memory>

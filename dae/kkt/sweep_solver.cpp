@@ -5,7 +5,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
 #include <cmath>

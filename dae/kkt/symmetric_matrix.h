@@ -2,7 +2,7 @@
 // A sparse symmetric matrix on a fixed pattern, both triangles by columns, as the libraries take
 // it.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <array>
 #include <vector>

@@ -1,9 +1,9 @@
-#include <momenta/core/lagrangian/lagrangian_model.h>
-#include <momenta/dae/dense/least_squares.h>
+#include <momenta/core/scene/lagrangian/lagrangian_model.h>
+#include <momenta/dae/algebra/dense/least_squares.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/kkt/unheld_joints.h>
-#include <momenta/dae/tree_factor.h>
+#include <momenta/dae/mechanism/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>

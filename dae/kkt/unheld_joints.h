@@ -3,12 +3,12 @@
 //
 //   M v = 0,   Φ_q v = 0.
 //
-// N, the null space of M, has a column for each lost pivot (core/massless_joints.h): its rate 1,
-// the other lost ones 0, and what joints with inertia do so that no mass moves. Loops leave N Y
-// with Φ_q N Y = 0. Unless that is empty, u̇ and σ̇ do not exist, or are not unique.
+// N, the null space of M, has a column for each lost pivot (core/kernel/massless_joints.h): its
+// rate 1, the other lost ones 0, and what joints with inertia do so that no mass moves. Loops leave
+// N Y with Φ_q N Y = 0. Unless that is empty, u̇ and σ̇ do not exist, or are not unique.
 
-#include <momenta/core/massless_joints.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/core/kernel/massless_joints.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 

@@ -2,13 +2,13 @@
 // Shared by the files of the Python module. Python objects share their mechanism; vectors go in and
 // out without copies, as NumPy arrays of float64.
 
-#include <momenta/core/arguments.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/toml/setting.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/chain/closed_chain.h>
+#include <momenta/core/format/toml/setting.h>
+#include <momenta/core/open_chain/arguments.h>
+#include <momenta/core/open_chain/open_chain.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/unheld_joints.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>

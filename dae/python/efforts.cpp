@@ -1,7 +1,7 @@
 // Efforts along a given motion.
 
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/effort/effort.h>
+#include <momenta/dae/analysis/effort/effort.h>
 
 #include <optional>
 

@@ -1,11 +1,11 @@
 // Parameters that fit a mechanism to a goal or to measurements, or make a functional of its motion
 // least.
 
-#include <momenta/dae/fit/identification.h>
-#include <momenta/dae/fit/least.h>
-#include <momenta/dae/report/fit_report.h>
-#include <momenta/dae/report/identification_report.h>
-#include <momenta/dae/report/least_report.h>
+#include <momenta/dae/output/fit_report.h>
+#include <momenta/dae/output/identification_report.h>
+#include <momenta/dae/output/least_report.h>
+#include <momenta/dae/study/fit/identification.h>
+#include <momenta/dae/study/fit/least.h>
 
 #include "progress.h"
 #include "run_arguments.h"

@@ -1,12 +1,12 @@
 // Mechanism: the data of a scene, its consistent start, and the equations at one state.
 
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
-#include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/run/state_values.h>
+#include <momenta/dae/topology/assembly/drive_reach.h>
 
 #include <optional>
 

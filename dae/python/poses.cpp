@@ -1,8 +1,8 @@
 // Poses along a swept coordinate, and assemblies.
 
-#include <momenta/dae/kinematics/assemblies.h>
-#include <momenta/dae/kinematics/move.h>
-#include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/analysis/kinematics/assemblies.h>
+#include <momenta/dae/analysis/kinematics/move.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/study/environment.h>
 
 #include <limits>

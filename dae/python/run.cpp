@@ -2,10 +2,10 @@
 
 #include "run.h"
 
-#include <momenta/dae/report/table.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/output/table.h>
+#include <momenta/dae/run/run_quantities.h>
 #include <momenta/dae/study/drift_study.h>
-#include <momenta/dae/study/run_quantities.h>
 
 #include <cstring>
 

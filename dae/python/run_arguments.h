@@ -2,7 +2,7 @@
 // Arguments of a run, with the names and defaults of `momenta run`, for one run and for the runs of
 // a sweep.
 
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <optional>
 

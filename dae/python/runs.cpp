@@ -1,8 +1,8 @@
 // Runs and studies. Long calls release the interpreter's lock, and Ctrl-C stops them at the next
 // sample.
 
+#include <momenta/dae/run/force_columns.h>
 #include <momenta/dae/study/drift_study.h>
-#include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/work_study.h>
 

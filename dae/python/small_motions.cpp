@@ -1,9 +1,9 @@
 // Equilibria, modes and linear models.
 
-#include <momenta/dae/assembly/drive_reach.h>
-#include <momenta/dae/linear/linear_model.h>
-#include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/analysis/linear/linear_model.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/study/modes_study.h>
+#include <momenta/dae/topology/assembly/drive_reach.h>
 
 #include "bindings.h"
 

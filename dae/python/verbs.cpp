@@ -1,19 +1,19 @@
 // Reading of scenes, and the verbs evaluate, index, sweep and view for the functions of the
 // package. States and results are text in the formats of the program.
 
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/report/index_report.h>
-#include <momenta/dae/report/page.h>
-#include <momenta/dae/report/part_file.h>
-#include <momenta/dae/report/state_report.h>
-#include <momenta/dae/report/still.h>
-#include <momenta/dae/report/sweep_report.h>
+#include <momenta/dae/output/index_report.h>
+#include <momenta/dae/output/page.h>
+#include <momenta/dae/output/part_file.h>
+#include <momenta/dae/output/state_report.h>
+#include <momenta/dae/output/still.h>
+#include <momenta/dae/output/sweep_report.h>
+#include <momenta/dae/run/state_input.h>
 #include <momenta/dae/study/environment.h>
-#include <momenta/dae/study/state_input.h>
 
 #include <array>
 #include <atomic>

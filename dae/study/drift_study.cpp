@@ -1,8 +1,8 @@
-#include <momenta/core/share.h>
-#include <momenta/dae/cut/integrated_scene.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/core/open_chain/share.h>
+#include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_record.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include <atomic>
 #include <mutex>

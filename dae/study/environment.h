@@ -1,5 +1,5 @@
 #pragma once
-#include <momenta/dae/study/run_result.h>
+#include <momenta/dae/run/run_result.h>
 
 #include <string_view>
 

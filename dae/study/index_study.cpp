@@ -1,4 +1,4 @@
-#include <momenta/dae/dense/singular_values.h>
+#include <momenta/dae/algebra/dense/singular_values.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/loop_rank.h>

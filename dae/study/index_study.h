@@ -3,8 +3,8 @@
 // theory of IDA's method covers it.
 
 #include <momenta/dae/form/form_entry.h>
-#include <momenta/dae/measure/derivative_array.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/run/measure/derivative_array.h>
 
 #include <functional>
 

@@ -1,11 +1,11 @@
-#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/dae/linear/linearisation.h>
-#include <momenta/dae/linear/operating_point.h>
-#include <momenta/dae/linear/pose_motion.h>
-#include <momenta/dae/measure/rank.h>
+#include <momenta/core/scene/lagrangian/lagrangian_model.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
+#include <momenta/dae/analysis/linear/operating_point.h>
+#include <momenta/dae/analysis/linear/pose_motion.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/motion.h>
 #include <momenta/dae/study/modes_study.h>
-#include <momenta/dae/study/motion.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 // An equilibrium of a mechanism, the small motions about it, and pictures of them.
 
-#include <momenta/dae/linear/spectrum.h>
-#include <momenta/dae/linear/steady_motion.h>
-#include <momenta/dae/study/picture.h>
+#include <momenta/dae/analysis/linear/spectrum.h>
+#include <momenta/dae/analysis/linear/steady_motion.h>
+#include <momenta/dae/run/picture.h>
 
 #include <optional>
 

@@ -1,16 +1,16 @@
 #include <momenta/core/scene/formula.h>
-#include <momenta/dae/cut/integrated_scene.h>
-#include <momenta/dae/measure/drive_power.h>
-#include <momenta/dae/solver/extrapolation.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/solver/radau_collocation.h>
-#include <momenta/dae/study/force_columns.h>
-#include <momenta/dae/study/integrated_work.h>
+#include <momenta/core/text/number_text.h>
+#include <momenta/dae/integrator/extrapolation.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/integrator/radau_collocation.h>
+#include <momenta/dae/run/force_columns.h>
+#include <momenta/dae/run/integrated_work.h>
+#include <momenta/dae/run/measure/drive_power.h>
+#include <momenta/dae/run/rank_at_start.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/quad_motion.h>
-#include <momenta/dae/study/rank_at_start.h>
-#include <momenta/dae/study/run_form.h>
-#include <momenta/dae/text/number_text.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 // more; there Radau's method of order 17 takes its place (solver/radau_collocation.h).
 
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/measure/reference.h>
-#include <momenta/dae/study/force_columns.h>
+#include <momenta/dae/run/force_columns.h>
+#include <momenta/dae/run/measure/reference.h>
 
 #include <functional>
 #include <string>

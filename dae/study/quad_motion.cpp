@@ -1,10 +1,10 @@
 #include <momenta/core/expression/functions_quad.h>
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/dae/lagrangian_rows.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/spatial_loop_sweeps.h>
+#include <momenta/dae/mechanism/lagrangian_rows.h>
 #include <momenta/dae/study/quad_motion.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
-#include <momenta/dae/sweeps/planar_loop_sweeps.h>
-#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -5,7 +5,7 @@
 // lengths and masses differ from those of the scene by rounding.
 
 #include <momenta/core/expression/functions_quad.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <memory>
 

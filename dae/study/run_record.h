@@ -1,9 +1,9 @@
 #pragma once
 // A run as JSON that reads back bit by bit, for journals: all of a run except its trajectory.
 
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/own_reference.h>
-#include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/stress_study.h>
 #include <momenta/dae/study/sweep_study.h>
 

@@ -1,9 +1,9 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/text/number_text.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/scene_suite.h>
-#include <momenta/dae/text/number_text.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <cmath>

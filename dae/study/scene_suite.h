@@ -12,11 +12,11 @@
 //   threshold = 1e-3
 //   allowed = [1e-1, 1e-3]         # errors that the source accepts
 //
-// A suite of files of equations, dae/equations/suite.h, is another kind: its problems have a
-// `file`.
+// A suite of files of equations, dae/analysis/equations/suite.h, is another kind: its problems have
+// a `file`.
 
-#include <momenta/core/scene/toml/setting.h>
-#include <momenta/dae/measure/benchmark_error.h>
+#include <momenta/core/format/toml/setting.h>
+#include <momenta/dae/run/measure/benchmark_error.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <filesystem>

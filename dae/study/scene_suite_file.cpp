@@ -1,10 +1,10 @@
 // Files of suites of mechanisms: their keys and what is refused.
 
+#include <momenta/core/format/toml/fields.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/toml/fields.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/study/scene_suite.h>
 
 namespace momenta {

@@ -1,6 +1,6 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/core/text/number_text.h>
 #include <momenta/dae/study/section_study.h>
-#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 // nearest to the guess are linear in it. a, b, c come from r = −1, 0, 1; of the two roots that one
 // is taken that has the sign of the scene's own r. A value for which there is none is left out.
 
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <functional>
 #include <string>

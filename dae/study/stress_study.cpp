@@ -1,12 +1,12 @@
+#include <momenta/core/open_chain/share.h>
 #include <momenta/core/scene/validate.h>
-#include <momenta/core/share.h>
-#include <momenta/dae/cut/integrated_scene.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/solver/stopping.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/integrator/stopping.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/stress_study.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include <algorithm>
 #include <atomic>

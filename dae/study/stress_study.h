@@ -12,9 +12,9 @@
 // are all within one bound. Otherwise the verdict distinguishes two kinds of failure: a run that
 // stopped or took too long reported it; a run with wrong results did not.
 
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/journal.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <functional>
 #include <optional>

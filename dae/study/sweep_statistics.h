@@ -6,8 +6,8 @@
 // Times are those of the first case that is done; cases with others (a varied end time, say) are
 // not in the curves.
 
-#include <momenta/dae/sample/sensitivity.h>
-#include <momenta/dae/sample/statistics.h>
+#include <momenta/dae/analysis/sample/sensitivity.h>
+#include <momenta/dae/analysis/sample/statistics.h>
 #include <momenta/dae/study/sweep_study.h>
 
 namespace momenta {

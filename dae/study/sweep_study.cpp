@@ -1,8 +1,8 @@
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/solver/stopping.h>
+#include <momenta/dae/integrator/stopping.h>
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/sweep_study.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <charconv>

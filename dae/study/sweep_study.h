@@ -5,11 +5,11 @@
 // Cases are numbered from 0; of combinations the last varied number changes fastest. A case depends
 // on its number alone, so threads, processes and continued studies give the same results.
 
-#include <momenta/core/scene/toml/setting.h>
-#include <momenta/dae/mechanism.h>
-#include <momenta/dae/sample/distribution.h>
-#include <momenta/dae/sample/sample.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/core/format/toml/setting.h>
+#include <momenta/dae/analysis/sample/distribution.h>
+#include <momenta/dae/analysis/sample/sample.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cstddef>
 #include <memory>

@@ -1,6 +1,6 @@
-#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/timing.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include <algorithm>
 #include <cmath>

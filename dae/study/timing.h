@@ -5,8 +5,8 @@
 // 0.93 (q3 − q1) / √n; the median is settled when that is below 2 % of m, after two rounds at the
 // earliest.
 
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/journal.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <functional>
 #include <string>

@@ -1,9 +1,9 @@
-#include <momenta/dae/cut/integrated_scene.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/departures.h>
-#include <momenta/dae/study/rank_at_start.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/departures.h>
+#include <momenta/dae/run/rank_at_start.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include <algorithm>
 #include <cmath>

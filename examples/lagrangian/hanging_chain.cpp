@@ -4,9 +4,9 @@
 //   L = Σ ½ mₖ (ẋₖ² + ẏₖ²) − mₖ g yₖ,   Φₖ = (|rₖ₊₁ − rₖ|² − l²)/(2 l) = 0,   k = 0 … n
 //   r₀ = (0, 0),   rₙ₊₁ = (d + a sin 3t, 0)
 
-#include <momenta/core/lagrangian/lagrangian_of.h>
+#include <momenta/core/scene/lagrangian/lagrangian_of.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <cstdio>

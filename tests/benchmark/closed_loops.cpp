@@ -4,11 +4,11 @@
 // carried by the sweeps; _sparse and _dense assemble the matrix. 16 states in turn, near the start.
 
 #include <benchmark/benchmark.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/core/kernel/levels/level.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include "equations/linkages.h"
 #include "equations/quad_loops.h"

@@ -9,12 +9,12 @@
 // counter error: of the tips at the end, against a pendulum [m]; the label says how the run ended.
 
 #include <benchmark/benchmark.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/integrated_scene.h>
-#include <momenta/dae/cut/recut.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
+#include <momenta/dae/topology/cut/recut.h>
 
 #include <chrono>
 #include <functional>

@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <algorithm>
 #include <vector>

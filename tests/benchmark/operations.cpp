@@ -3,7 +3,7 @@
 // of the paper. Formulas are the line through n = 40 and n = 41; the column "exact" says whether it
 // meets n = 10.
 
-#include <momenta/core/operations.h>
+#include <momenta/core/open_chain/operations.h>
 
 #include <cstdio>
 #include <string>

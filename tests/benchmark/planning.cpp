@@ -7,9 +7,9 @@
 // Families are those of `momenta make`.
 
 #include <benchmark/benchmark.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/recut.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/recut.h>
 
 #include <memory>
 

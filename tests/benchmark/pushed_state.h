@@ -2,8 +2,8 @@
 // A state of which nothing is zero: the scene's positions, its rates and a push of up to 1 rad/s or
 // m/s, which the loops need not allow.
 
-#include <momenta/dae/evaluation.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/evaluation.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <cmath>
 

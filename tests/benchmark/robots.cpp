@@ -1,15 +1,15 @@
 // Rows robots/<form>/<file>: one right-hand side of each robot of examples/models, and of the
 // folder that MOMENTA_MODELS names, counter ns_per_evaluation; the label says how many rates and
 // equations there are and what solves them. Trees take OpenChain's calls, (q, p) → (q̇, ṗ) and (q,
-// u) → u̇; loops what runs integrate (dae/cut/integrated_scene.h), (7)-(8) and (3).
+// u) → u̇; loops what runs integrate (dae/topology/cut/integrated_scene.h), (7)-(8) and (3).
 
 #include <benchmark/benchmark.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/integrated_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include "nanoseconds.h"
 #include "robot_files.h"

@@ -10,10 +10,10 @@
 // machine, without them, up to 3.6 times less time was measured.
 
 #include <benchmark/benchmark.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <string>

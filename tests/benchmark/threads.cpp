@@ -7,7 +7,7 @@
 //               state could give
 
 #include <benchmark/benchmark.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <atomic>
 #include <string>

@@ -1,6 +1,6 @@
 #include "equations/any_text.h"
 
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <exception>
 

@@ -4,8 +4,8 @@
 #include "equations/linkages.h"
 #include "equations/parts.h"
 
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/kinematics/assemblies.h>
+#include <momenta/dae/analysis/kinematics/assemblies.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <string>

@@ -3,7 +3,7 @@
 // constraint x v_x + y v_y = 0 (index 2) or (|q|² − 1)/2 = 0 (index 3); exact Jacobians by hand,
 // and the same motion by the angle.
 
-#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/integrator/integration.h>
 
 #include <gtest/gtest.h>
 

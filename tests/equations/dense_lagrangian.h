@@ -13,9 +13,9 @@
 // Nothing here knows of recursions, transforms or quasi-velocity equations. In canonical trees
 // lagrange_rates() gives ṗ once more as ∂L/∂q + Q.
 
+#include <momenta/core/kernel/tree/tree.h>
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/tree/tree.h>
 
 #include <Eigen/Dense>
 #include <array>

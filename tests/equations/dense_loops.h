@@ -1,6 +1,6 @@
 #pragma once
-// The slow twin of dae/loop: Φ of a scene's loops from the positions of its bodies alone, and
-// everything else by dual numbers, in long double.
+// The slow twin of dae/mechanism/loop: Φ of a scene's loops from the positions of its bodies alone,
+// and everything else by dual numbers, in long double.
 //
 //   Φ(t, q)    b_j · (x_A − x_B), a_i · b_j, (|x_A − x_B|² − l²) / (2 l) on frames(t, q)
 //   Φ̇          derivative of Φ along q̇ = N(q) u, ṫ = 1

@@ -1,7 +1,7 @@
 #include "equations/descriptions.h"
 #include "equations/parts.h"
 
-#include <momenta/core/plan.h>
+#include <momenta/core/kernel/plan.h>
 
 #include <algorithm>
 #include <set>

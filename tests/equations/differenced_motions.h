@@ -8,8 +8,8 @@
 
 #include "equations/kkt_blocks.h"
 
-#include <momenta/dae/linear/equilibrium.h>
-#include <momenta/dae/linear/pose_motion.h>
+#include <momenta/dae/analysis/linear/equilibrium.h>
+#include <momenta/dae/analysis/linear/pose_motion.h>
 
 #include <Eigen/Dense>
 #include <complex>

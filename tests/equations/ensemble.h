@@ -13,8 +13,8 @@
 // MOMENTA_JITTER=k in the environment, k = 1, 2, …, moves the starts of all runs in process by
 // pattern k: whatever fails then has drawn its bound around rounding.
 
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <string>
 #include <vector>

@@ -4,7 +4,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/system.h>
+#include <momenta/dae/integrator/system.h>
 
 #include <Eigen/Core>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // Scenes of the folder of examples, by their names there.
 
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <filesystem>
 #include <string>

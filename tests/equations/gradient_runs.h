@@ -1,8 +1,8 @@
 #pragma once
 // Runs that are differentiated, and how they are asked for.
 
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/gradient/gradient.h>
 
 #include <string>

@@ -6,7 +6,7 @@
 
 #include <momenta/core/expression/functions_quad.h>
 #include <momenta/core/scalar/quad.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <functional>

@@ -7,11 +7,11 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/gauge_symmetry.h>
-#include <momenta/dae/solver/half_explicit.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/gauge_symmetry.h>
+#include <momenta/dae/integrator/half_explicit.h>
+#include <momenta/dae/integrator/integrators.h>
 
 #include <algorithm>
 #include <filesystem>

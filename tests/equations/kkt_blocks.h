@@ -1,5 +1,5 @@
 #pragma once
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <algorithm>
 #include <vector>

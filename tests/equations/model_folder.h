@@ -2,7 +2,7 @@
 // A folder with the files of one test's models.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <filesystem>
 #include <fstream>

@@ -1,10 +1,10 @@
 #include "equations/other_trees.h"
 
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/interchange.h>
-#include <momenta/dae/cut/relative_motion.h>
-#include <momenta/dae/linear/pose_motion.h>
+#include <momenta/dae/analysis/linear/pose_motion.h>
 #include <momenta/dae/study/extremes.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/interchange.h>
+#include <momenta/dae/topology/cut/relative_motion.h>
 
 #include <array>
 #include <map>

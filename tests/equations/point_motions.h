@@ -4,7 +4,7 @@
 // its acceleration Φ̈. No coordinate of any joint is in it: it is what two descriptions of one
 // mechanism have in common.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <Eigen/Core>
 #include <memory>

@@ -10,8 +10,8 @@
 
 #include <momenta/core/expression/functions_quad.h>
 #include <momenta/core/scalar/quad.h>
-#include <momenta/dae/linear/independent_coordinates.h>
-#include <momenta/dae/linear/marker_motion.h>
+#include <momenta/dae/analysis/linear/independent_coordinates.h>
+#include <momenta/dae/mechanism/marker_motion.h>
 
 #include <Eigen/Core>
 #include <cmath>

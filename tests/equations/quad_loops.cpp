@@ -1,9 +1,9 @@
 #include "equations/quad_loops.h"
 
 #include <momenta/core/expression/functions_quad.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
-#include <momenta/dae/sweeps/planar_loop_sweeps.h>
-#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/spatial_loop_sweeps.h>
 
 namespace momenta {
 namespace {

@@ -3,7 +3,7 @@
 // another scalar, so that what differs is rounding alone. That the sweeps are right is for the
 // tests to say.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 namespace momenta {
 

@@ -2,8 +2,8 @@
 // Random scenes without loops: what shape the tree has, which joints, where they sit, what drives
 // and pulls them. A recipe and a seed give the same scene on every machine.
 
+#include <momenta/core/kernel/tree/tree.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/tree/tree.h>
 
 #include <Eigen/Geometry>
 #include <cstdint>

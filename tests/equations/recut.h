@@ -1,8 +1,8 @@
 #pragma once
 // One mechanism of hinges, cut elsewhere.
 
+#include <momenta/core/kernel/tree/tree.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/tree/tree.h>
 
 #include <string>
 

@@ -2,10 +2,10 @@
 // Rolling wheels and a knife edge, and how the laws of nonholonomic rows run them.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cstdio>
 #include <string>

@@ -2,7 +2,7 @@
 // Runs as tests ask for them: a form by an integrator, with error control or by steps of one
 // length, in a gauge, up to an end, with so many samples.
 
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <string>
 #include <utility>

@@ -3,7 +3,7 @@
 // states, joint by joint.
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <random>
 

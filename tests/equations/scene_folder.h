@@ -2,7 +2,7 @@
 // Scenes from texts of files, in a folder of their own that a test leaves behind it empty.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <filesystem>
 #include <fstream>

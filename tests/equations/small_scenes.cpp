@@ -5,12 +5,12 @@
 #include "equations/random_loops.h"
 #include "equations/runs.h"
 
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/measure/rank.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <cmath>
 #include <exception>

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/Dense>
 

@@ -5,7 +5,7 @@
 #include "equations/random_tree.h"
 
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 namespace momenta::equations {
 

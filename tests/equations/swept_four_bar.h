@@ -4,8 +4,8 @@
 #include "equations/linkages.h"
 #include "equations/parts.h"
 
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/analysis/kinematics/move.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // Trees with user joints for the tests: laws, bodies, and everything a chain answers at one state.
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/user_joint.h>
+#include <momenta/core/open_chain/open_chain.h>
+#include <momenta/core/open_chain/user_joint.h>
 
 #include <functional>
 #include <map>

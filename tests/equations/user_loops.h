@@ -2,7 +2,7 @@
 // Mechanisms with loops whose joints are built in, and the same ones with user joints in their
 // place: a spatial slider-crank in several ways, and a pin that slides on a curve.
 
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include "equations/parts.h"
 #include "equations/user_chain.h"

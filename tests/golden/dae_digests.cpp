@@ -4,11 +4,11 @@
 
 #include <gnu/libc-version.h>
 #include <gtest/gtest.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/core/kernel/levels/level.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/environment.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <bit>
 #include <filesystem>

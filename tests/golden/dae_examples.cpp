@@ -4,8 +4,8 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <filesystem>

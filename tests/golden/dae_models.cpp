@@ -3,9 +3,9 @@
 // redundant ones too. examples/models/README.md tells what the values are and where the models come
 // from; MOMENTA_MODELS names a folder with more of them, and then a table is printed.
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/joint_places.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/mechanism/joint_places.h>
+#include <momenta/dae/run/state_values.h>
 
 #include <cstdio>
 #include <cstdlib>

@@ -4,9 +4,9 @@
 #include "golden/program.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <sys/resource.h>
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "golden/program.h"
 
-#include <momenta/dae/report/part_file.h>
+#include <momenta/dae/output/part_file.h>
 #include <sys/mount.h>
 
 #include <chrono>

@@ -4,8 +4,8 @@
 #include "golden/program.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/sweep_report.h>
+#include <momenta/dae/output/sweep_report.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <csignal>
 #include <set>

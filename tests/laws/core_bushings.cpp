@@ -7,8 +7,8 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <numbers>
 

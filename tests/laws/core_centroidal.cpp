@@ -7,8 +7,8 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/centroidal_sums.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/centroidal_sums.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 namespace momenta::core_centroidal {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/body_forces.h>
-#include <momenta/core/tree/tree.h>
+#include <momenta/core/kernel/tree/tree.h>
 
 #include <string>
 #include <vector>

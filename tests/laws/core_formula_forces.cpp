@@ -7,9 +7,9 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/core/kernel/body_forces.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <cmath>
 #include <cstdio>

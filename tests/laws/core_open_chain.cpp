@@ -11,7 +11,7 @@
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/momentum_recursion.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 namespace momenta::core_open_chain {
 namespace {

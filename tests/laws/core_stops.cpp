@@ -5,9 +5,9 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/core/kernel/branches/branches.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 namespace momenta::core_stops {
 namespace {

@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/recorded_run.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_adjoint.h>
-#include <momenta/dae/solver/butcher_tableau.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/butcher_tableau.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <optional>

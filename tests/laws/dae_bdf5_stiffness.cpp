@@ -5,10 +5,10 @@
 #include "equations/examples.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/bdf_step.h>
-#include <momenta/dae/solver/local_newton.h>
+#include <momenta/dae/integrator/bdf_step.h>
+#include <momenta/dae/integrator/local_newton.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <cmath>
 

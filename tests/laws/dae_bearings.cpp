@@ -11,12 +11,12 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/bearings.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/bearing_friction.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/mechanism/bearings.h>
+#include <momenta/dae/run/run_form.h>
 
 namespace momenta::dae_bearings {
 namespace {

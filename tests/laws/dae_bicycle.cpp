@@ -5,8 +5,8 @@
 #include "equations/rolling.h"
 #include "equations/runs.h"
 
+#include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/form/coordinate_motion.h>
-#include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/study/modes_study.h>
 
 #include <Eigen/Eigenvalues>

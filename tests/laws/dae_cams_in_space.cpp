@@ -8,11 +8,11 @@
 //                                              circles that touch are a rod between their centres
 
 #include <gtest/gtest.h>
-#include <momenta/core/centroidal.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/open_chain/centroidal.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 

@@ -5,10 +5,10 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/recut.h>
-#include <momenta/dae/cut/tree_order.h>
-#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/kkt/sweeps/slots/loop_plan.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/recut.h>
+#include <momenta/dae/topology/cut/tree_order.h>
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,6 @@
-// A loop beside which no other is open closes on its own rows alone (dae/sweeps/front.h): what it
-// adds to M* and D, and its impulses for a motion of the closing body, against W solved as a whole,
+// A loop beside which no other is open closes on its own rows alone (dae/kkt/sweeps/front.h): what
+// it adds to M* and D, and its impulses for a motion of the closing body, against W solved as a
+// whole,
 //
 //   M* += C W⁻¹ Cᵀ,  D += C W⁻¹ d,  σ = W⁻¹ (CᵀΩ + d),
 //
@@ -11,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/revolute.h>
 #include <momenta/core/scalar/pack.h>
-#include <momenta/dae/sweeps/spatial_columns.h>
+#include <momenta/dae/kkt/sweeps/spatial_columns.h>
 
 #include <Eigen/Dense>
 

@@ -4,12 +4,12 @@
 #include "equations/swept_four_bar.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/effort/effort.h>
-#include <momenta/dae/kinematics/move.h>
-#include <momenta/dae/linear/linear_model.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/analysis/effort/effort.h>
+#include <momenta/dae/analysis/kinematics/move.h>
+#include <momenta/dae/analysis/linear/linear_model.h>
 #include <momenta/dae/study/modes_study.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <cstdio>

@@ -2,11 +2,11 @@
 // other joints and loops, in every form, or by formulas of the textbooks.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <numbers>
 

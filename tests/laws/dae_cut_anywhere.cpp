@@ -9,7 +9,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 namespace momenta::dae_cut_anywhere {
 namespace {

@@ -21,10 +21,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/measure/rank.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <cmath>

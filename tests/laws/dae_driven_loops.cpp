@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <numbers>
 

@@ -10,9 +10,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/chain/closed_chain.h>
-#include <momenta/dae/effort/effort.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
+#include <momenta/dae/analysis/effort/effort.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <functional>

@@ -6,11 +6,11 @@
 //   differences.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/constrained_steps.h>
-#include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/constrained_steps.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/run/run_form.h>
 
 #include "equations/ensemble.h"
 #include "equations/examples.h"

@@ -3,12 +3,12 @@
 // least; runs have their methods' order and end where published references do.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/equations/equation_run.h>
-#include <momenta/dae/equations/quad_reference.h>
+#include <momenta/dae/analysis/equations/equation_run.h>
+#include <momenta/dae/analysis/equations/quad_reference.h>
 #include <momenta/dae/study/index_study.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <Eigen/LU>
 

@@ -10,12 +10,12 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/joint_places.h>
-#include <momenta/dae/measure/reactions.h>
-#include <momenta/dae/study/force_columns.h>
+#include <momenta/dae/mechanism/joint_places.h>
+#include <momenta/dae/run/force_columns.h>
+#include <momenta/dae/run/measure/reactions.h>
+#include <momenta/dae/run/reference_errors.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/own_reference.h>
-#include <momenta/dae/study/reference_errors.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,12 +2,12 @@
 // times that are known; one time in every form and integrator; what is no event.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/event/crossings.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/event/crossings.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <algorithm>
 #include <cmath>

@@ -11,11 +11,11 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <cmath>
 #include <random>

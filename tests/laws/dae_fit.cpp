@@ -2,10 +2,10 @@
 // poses assembled anew, results against closed formulas and against mechanisms that are known.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/fit/fit.h>
-#include <momenta/dae/kinematics/move.h>
-#include <momenta/dae/report/fit_picture.h>
+#include <momenta/dae/analysis/kinematics/move.h>
+#include <momenta/dae/output/fit_picture.h>
+#include <momenta/dae/study/fit/fit.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <fstream>

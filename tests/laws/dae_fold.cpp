@@ -9,14 +9,14 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 #include <momenta/core/scene/drive.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/fold_rotors.h>
-#include <momenta/dae/cut/fold_welds.h>
-#include <momenta/dae/cut/interchange.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/run/state_values.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/fold_rotors.h>
+#include <momenta/dae/topology/cut/fold_welds.h>
+#include <momenta/dae/topology/cut/interchange.h>
 
 #include <map>
 

@@ -12,15 +12,15 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/joint_places.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/measure/drive_power.h>
-#include <momenta/dae/measure/reactions.h>
+#include <momenta/dae/mechanism/joint_places.h>
+#include <momenta/dae/run/measure/drive_power.h>
+#include <momenta/dae/run/measure/reactions.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/run/state_values.h>
 #include <momenta/dae/study/own_reference.h>
-#include <momenta/dae/study/run_form.h>
-#include <momenta/dae/study/state_values.h>
 
 #include <algorithm>
 #include <cmath>

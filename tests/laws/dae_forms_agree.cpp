@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 namespace momenta::dae_forms_agree {
 namespace {

@@ -14,13 +14,13 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/expression/functions_quad.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/chain/closed_chain.h>
-#include <momenta/dae/cut/integrated_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/index_study.h>
 #include <momenta/dae/study/modes_study.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 namespace momenta::dae_formula_forces {
 namespace {

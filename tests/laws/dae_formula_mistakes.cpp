@@ -4,10 +4,10 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/equations/equation_start.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/dae/analysis/equations/equation_start.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <filesystem>
 #include <fstream>

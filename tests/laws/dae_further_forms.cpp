@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/drift_study.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <numbers>
 

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/ode_slopes.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/integrator/ode_slopes.h>
+#include <momenta/dae/run/run_form.h>
 
 #include "equations/ensemble.h"
 #include "equations/examples.h"

@@ -5,7 +5,7 @@
 #include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <complex>

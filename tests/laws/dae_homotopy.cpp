@@ -6,7 +6,7 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/kinematics/homotopy.h>
+#include <momenta/dae/analysis/kinematics/homotopy.h>
 
 #include <cmath>
 #include <numbers>

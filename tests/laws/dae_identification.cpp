@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scalar/sixth_order.h>
-#include <momenta/dae/fit/identification.h>
+#include <momenta/dae/study/fit/identification.h>
 
 #include <cmath>
 #include <fstream>

@@ -11,11 +11,11 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/index_study.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <random>
 

@@ -14,9 +14,9 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/drive_reach.h>
 
 #include <algorithm>
 #include <cmath>

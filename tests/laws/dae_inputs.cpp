@@ -3,11 +3,11 @@
 // equations.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/equations/equation_run.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/dae/analysis/equations/equation_run.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <numbers>

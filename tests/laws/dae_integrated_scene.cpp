@@ -8,13 +8,13 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/chain/closed_chain.h>
-#include <momenta/dae/cut/integrated_scene.h>
-#include <momenta/dae/cut/interchange.h>
-#include <momenta/dae/cut/written_motion.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
+#include <momenta/dae/topology/cut/interchange.h>
+#include <momenta/dae/topology/cut/written_motion.h>
 
 #include <cmath>
 #include <numbers>

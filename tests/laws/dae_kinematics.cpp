@@ -7,9 +7,9 @@
 #include "equations/swept_four_bar.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/kinematics/move.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/analysis/kinematics/move.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <array>
 #include <cmath>

@@ -8,16 +8,16 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/expression/functions_quad.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/lagrangian_rows.h>
-#include <momenta/dae/report/chart.h>
+#include <momenta/dae/mechanism/lagrangian_rows.h>
+#include <momenta/dae/output/chart.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/index_study.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/own_reference.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <random>
 

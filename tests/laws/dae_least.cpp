@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/effort/effort.h>
-#include <momenta/dae/fit/least.h>
-#include <momenta/dae/fit/swept_poses.h>
+#include <momenta/dae/analysis/effort/effort.h>
+#include <momenta/dae/study/fit/least.h>
+#include <momenta/dae/study/fit/swept_poses.h>
 #include <momenta/dae/study/journal.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <filesystem>

@@ -6,7 +6,7 @@
 #include "equations/quad_loops.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
 #include <momenta/dae/kkt/leaves_first.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>

@@ -11,10 +11,10 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/text/near_name.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/linear/linear_model.h>
-#include <momenta/dae/linear/loop_drives.h>
-#include <momenta/dae/study/state_after.h>
+#include <momenta/dae/analysis/linear/linear_model.h>
+#include <momenta/dae/analysis/linear/loop_drives.h>
+#include <momenta/dae/run/state_after.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <Eigen/Dense>
 #include <complex>

@@ -8,11 +8,11 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/linear/linear_model.h>
-#include <momenta/dae/linear/linearisation.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/analysis/linear/linear_model.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
+#include <momenta/dae/run/state_after.h>
 #include <momenta/dae/study/modes_study.h>
-#include <momenta/dae/study/state_after.h>
 
 #include <Eigen/Dense>
 #include <complex>

@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/bdf_step.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/bdf_step.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <numbers>

@@ -9,14 +9,14 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/poses.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
+#include <momenta/core/open_chain/poses.h>
 #include <momenta/core/scalar/quad.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <array>
 #include <cmath>

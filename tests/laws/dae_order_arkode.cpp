@@ -3,7 +3,7 @@
 
 #include <arkode/arkode_erkstep.h>
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/integrator/integration.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 

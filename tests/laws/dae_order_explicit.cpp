@@ -8,9 +8,9 @@
 // Differential Equations I, II.1.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/integrator/integration.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <cmath>

@@ -12,9 +12,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/tableau_hem5.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/integrator/tableau_hem5.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <array>
 #include <numbers>

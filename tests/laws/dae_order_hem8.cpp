@@ -12,8 +12,8 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/tableau_dop853.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/tableau_dop853.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <Eigen/LU>
 

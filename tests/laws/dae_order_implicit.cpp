@@ -7,10 +7,10 @@
 //                       spherical joints, whose q' is not v: 2; a pivot that moves as prescribed
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include "equations/cartesian_pendulum.h"
 #include "equations/ensemble.h"

@@ -6,7 +6,7 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/joint_places.h>
+#include <momenta/dae/mechanism/joint_places.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,10 +7,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/part_file.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/output/part_file.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <array>
 #include <cstdlib>

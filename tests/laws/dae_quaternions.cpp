@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <limits>

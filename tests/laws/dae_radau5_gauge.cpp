@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 

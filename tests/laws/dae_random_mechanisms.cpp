@@ -8,11 +8,11 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/measure/rank.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
-#include <momenta/dae/study/run_form.h>
 #include <rapidcheck/gtest.h>
 
 #include <cmath>

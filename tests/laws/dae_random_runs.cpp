@@ -16,11 +16,11 @@
 #include "equations/random_mechanisms.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <array>
 #include <cmath>

@@ -8,16 +8,16 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/interchange.h>
-#include <momenta/dae/cut/recut.h>
-#include <momenta/dae/cut/relative_motion.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/kkt/sweeps/slots/loop_plan.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/interchange.h>
+#include <momenta/dae/topology/cut/recut.h>
+#include <momenta/dae/topology/cut/relative_motion.h>
 
 #include <map>
 #include <random>

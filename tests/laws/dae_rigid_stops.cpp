@@ -2,13 +2,13 @@
 // holding, release, energy, in forms of every kind.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/event/impact.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/rigid_stops.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/run/event/impact.h>
+#include <momenta/dae/run/rigid_stops.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "equations/refusal.h"
 #include "equations/rolling.h"
 
-#include <momenta/core/poses.h>
+#include <momenta/core/open_chain/poses.h>
 #include <momenta/dae/study/modes_study.h>
 
 #include <cmath>

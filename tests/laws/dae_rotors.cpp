@@ -9,10 +9,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/kkt/factor/faded_pivot.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/run/state_values.h>
 
 namespace momenta::dae_rotors {
 namespace {

@@ -10,10 +10,10 @@
 #include <malloc.h>
 
 #include <momenta/core/expression/functions_quad.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/integrator/integration.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 #include <cmath>
 
 #include <memory>

@@ -3,11 +3,11 @@
 // in a suite is told in a sentence.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/submission.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/output/submission.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/scene_suite.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <filesystem>

@@ -5,8 +5,8 @@
 #include "equations/scene_folder.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/run/state_values.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <map>

@@ -8,9 +8,9 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/study/extremes.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <numbers>

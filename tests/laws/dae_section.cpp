@@ -2,8 +2,8 @@
 // energy; what cannot have the energy is left out.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/report/section_report.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/dae/output/section_report.h>
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/section_study.h>
 

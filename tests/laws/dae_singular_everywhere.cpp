@@ -7,11 +7,11 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <numbers>

@@ -10,10 +10,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/integrator/integration.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cstdio>
 #include <numbers>

@@ -4,7 +4,7 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/kkt/sweeps/slots/loop_plan.h>
 
 #include <algorithm>
 #include <set>

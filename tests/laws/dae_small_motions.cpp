@@ -10,12 +10,12 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/linear/linearisation.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/modes_study.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <filesystem>
 #include <numbers>

@@ -8,11 +8,11 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/stiffness.h>
-#include <momenta/dae/solver/tableau_dop853.h>
-#include <momenta/dae/solver/tableau_dp5.h>
-#include <momenta/dae/solver/tableau_vern9.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/stiffness.h>
+#include <momenta/dae/integrator/tableau_dop853.h>
+#include <momenta/dae/integrator/tableau_dp5.h>
+#include <momenta/dae/integrator/tableau_vern9.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 

@@ -2,10 +2,10 @@
 // between the samples, and what is said of it.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/study/passed_limits.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/passed_limits.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 

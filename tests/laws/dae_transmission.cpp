@@ -6,7 +6,7 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/analysis/kinematics/move.h>
 
 #include <cmath>
 #include <numbers>

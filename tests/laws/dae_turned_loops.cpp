@@ -18,10 +18,10 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/assembly/displacement_of_mass.h>
-#include <momenta/dae/assembly/turned_loops.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/assembly/displacement_of_mass.h>
+#include <momenta/dae/topology/assembly/turned_loops.h>
 
 #include <functional>
 #include <numbers>

@@ -2,11 +2,11 @@
 // known values, direct formulas and functions whose indices are known.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/sample/distribution.h>
-#include <momenta/dae/sample/sample.h>
-#include <momenta/dae/sample/sensitivity.h>
-#include <momenta/dae/sample/sobol_sequence.h>
-#include <momenta/dae/sample/statistics.h>
+#include <momenta/dae/analysis/sample/distribution.h>
+#include <momenta/dae/analysis/sample/sample.h>
+#include <momenta/dae/analysis/sample/sensitivity.h>
+#include <momenta/dae/analysis/sample/sobol_sequence.h>
+#include <momenta/dae/analysis/sample/statistics.h>
 #include <momenta/dae/study/sweep_statistics.h>
 
 #include <cmath>

@@ -3,12 +3,12 @@
 // whose E hangs on q, against slides that equations hold on it.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/chain/closed_chain.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/quad_motion.h>
-#include <momenta/dae/study/run_form.h>
 
 #include "equations/ensemble.h"
 #include "equations/exact_jacobian.h"

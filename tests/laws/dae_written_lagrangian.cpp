@@ -2,14 +2,14 @@
 // every form, with constraints that move, forces, terms linear in the rates and choices.
 
 #include <gtest/gtest.h>
-#include <momenta/core/lagrangian/lagrangian_of.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
+#include <momenta/core/scene/lagrangian/lagrangian_of.h>
 #include <momenta/core/scene/validate.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/index_study.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <bit>
 #include <cmath>

@@ -26,7 +26,7 @@ set(in_momenta usr/bin/momenta usr/share/man/man1/momenta.1.gz usr/share/bash-co
     usr/share/fish/vendor_completions.d/momenta.fish usr/share/doc/momenta/README.md usr/share/doc/momenta/docs/README.md
     usr/share/doc/momenta/docs/reference/program.md usr/share/doc/momenta/core/notation.md
     usr/share/doc/momenta/examples/four_bar/scene.toml usr/share/doc/momenta/examples/models/ur5/LICENSE)
-set(in_libmomenta-dev usr/include/momenta/core/open_chain.h usr/include/momenta/dae/study/run_form.h libmomenta_core.a
+set(in_libmomenta-dev usr/include/momenta/core/open_chain/open_chain.h usr/include/momenta/dae/run/run_form.h libmomenta_core.a
     libmomenta_dae.a momentaConfig.cmake momentaCoreTargets.cmake momentaDaeTargets.cmake)
 set(in_python3-momenta usr/lib/python3/dist-packages/momenta/_momenta[.] usr/lib/python3/dist-packages/momenta/__init__.py
     usr/lib/python3/dist-packages/momenta/__init__.pyi usr/lib/python3/dist-packages/momenta/py.typed)

@@ -11,9 +11,9 @@
 #include <cvodes/cvodes.h>
 #include <gtest/gtest.h>
 #include <idas/idas.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/sundials_handles.h>
+#include <momenta/dae/integrator/sundials_handles.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 

@@ -1,7 +1,7 @@
 // What public calls are given: wrong sizes are thrown and numbers that are none told, by call and
 // name, before anything is read or written.
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 #include <momenta/core/scalar/all_finite.h>
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include "equations/wild.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <cstdlib>
 #include <functional>

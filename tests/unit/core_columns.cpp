@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/expression/spline.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/drive.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
 
 #include <cmath>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include "equations/refusal.h"
 #include "equations/scene_folder.h"
 
-#include <momenta/core/scene/mesh/mesh_mass.h>
+#include <momenta/core/format/mesh/mesh_mass.h>
 #include <momenta/core/scene/validate.h>
 
 #include <chrono>

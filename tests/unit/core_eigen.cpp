@@ -1,7 +1,7 @@
 // Eigen under the definitions the library hands on to its users: blocked algorithms pack operands
 // into buffers of their own, which must be aligned for the instructions in use.
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <Eigen/Dense>
 

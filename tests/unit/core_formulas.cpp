@@ -6,10 +6,10 @@
 #include "equations/same_scene.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/scene/validate.h>
 
 #include <array>

@@ -6,7 +6,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <numbers>
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <cstdlib>
 

@@ -3,8 +3,8 @@
 
 #include "equations/scene_folder.h"
 
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/xml/known_elements.h>
+#include <momenta/core/format/xml/known_elements.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <algorithm>
 #include <cstdlib>

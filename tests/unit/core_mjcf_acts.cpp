@@ -1,8 +1,8 @@
 // What acts in an MJCF: springs, dampers, friction, tendons, actuators, couplings and limits.
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <filesystem>
 #include <fstream>

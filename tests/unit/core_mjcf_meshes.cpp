@@ -2,7 +2,7 @@
 
 #include "equations/model_folder.h"
 
-#include <momenta/core/scene/mesh/mesh_mass.h>
+#include <momenta/core/format/mesh/mesh_mass.h>
 
 #include <cmath>
 #include <cstring>

@@ -3,8 +3,8 @@
 #include "equations/any_text.h"
 #include "equations/model_folder.h"
 
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <chrono>
 #include <sstream>

@@ -1,7 +1,7 @@
 // Operations are counted right, grow by the same number for every body, and stay at or below what
 // the documentation promises.
 #include <gtest/gtest.h>
-#include <momenta/core/operations.h>
+#include <momenta/core/open_chain/operations.h>
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 // A scene with parameters is the scene with their numbers written out.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/setting.h>
+#include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/rod_ends.h>
-#include <momenta/core/scene/toml/setting.h>
-#include <momenta/core/scene/toml/write_scene.h>
 
 #include "equations/refusal.h"
 

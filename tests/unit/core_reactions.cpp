@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/reactions.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 namespace momenta::core_reactions {
 namespace {

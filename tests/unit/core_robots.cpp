@@ -2,8 +2,8 @@
 // thing said otherwise.
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <filesystem>
 #include <fstream>

@@ -4,7 +4,7 @@
 #include "equations/any_text.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,7 @@
 // Scenes that are right: every key of the format arrives where scene.h says.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <cmath>
 #include <filesystem>

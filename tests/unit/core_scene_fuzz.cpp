@@ -4,7 +4,7 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <random>
 #include <string>

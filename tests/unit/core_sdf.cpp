@@ -5,7 +5,7 @@
 #include "equations/scene_folder.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 
 namespace momenta::core_sdf {
 namespace {

@@ -3,7 +3,7 @@
 #include "equations/same_scene.h"
 #include "equations/scene_folder.h"
 
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 namespace momenta::core_sdf_includes {
 namespace {

@@ -1,6 +1,6 @@
 // User joints of the pose of built-in joints: the same motion, momenta, reactions, derivatives.
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/inverse_dynamics_sweeps.h>
 #include <momenta/core/kernel/jacobian_pass.h>
-#include <momenta/core/open_chain.h>
+#include <momenta/core/open_chain/open_chain.h>
 
 #include "equations/recursions.h"
 #include "equations/tolerance.h"

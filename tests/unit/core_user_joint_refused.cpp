@@ -1,8 +1,8 @@
 // User joints in batches, without inertia, and in scenes that refuse them.
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/operations.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
+#include <momenta/core/open_chain/operations.h>
 
 #include "equations/parts.h"
 #include "equations/refusal.h"

@@ -1,7 +1,7 @@
 // Solids to be drawn, from MJCF and URDF: where they lie in their bodies, and which of them there
 // are.
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 
 #include <filesystem>
 #include <fstream>

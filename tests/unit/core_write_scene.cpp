@@ -4,8 +4,8 @@
 #include "equations/same_scene.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/write_scene.h>
 
 #include <filesystem>
 

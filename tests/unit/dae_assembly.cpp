@@ -9,10 +9,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/assembly/start_accelerations.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/assembly/start_accelerations.h>
 
 #include <Eigen/SVD>
 

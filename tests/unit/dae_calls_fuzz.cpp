@@ -7,12 +7,12 @@
 #include "equations/wild.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/chain/closed_chain.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cstdlib>
 

@@ -9,7 +9,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/chain/closed_chain.h>
+#include <momenta/dae/analysis/chain/closed_chain.h>
 
 #include <cmath>
 

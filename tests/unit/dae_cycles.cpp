@@ -2,7 +2,7 @@
 // one is left that lowers the work, and that cuts lie in the middle of their cycles.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/cut/cycles.h>
+#include <momenta/dae/topology/cut/cycles.h>
 
 #include <random>
 

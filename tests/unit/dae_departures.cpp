@@ -6,11 +6,11 @@
 #include "equations/runs.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/study/departures.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/output/conclusion.h>
+#include <momenta/dae/run/departures.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/work_study.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <utility>

@@ -2,7 +2,7 @@
 // exact elimination in whole numbers, derivatives against those of known solutions.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/measure/derivative_array.h>
+#include <momenta/dae/run/measure/derivative_array.h>
 
 #include <Eigen/LU>
 

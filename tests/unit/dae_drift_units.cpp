@@ -7,14 +7,14 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/report/csv.h>
-#include <momenta/dae/report/json.h>
-#include <momenta/dae/report/table.h>
-#include <momenta/dae/study/apart.h>
+#include <momenta/dae/output/conclusion.h>
+#include <momenta/dae/output/csv.h>
+#include <momenta/dae/output/json.h>
+#include <momenta/dae/output/table.h>
+#include <momenta/dae/run/apart.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 #include <unit/page/synthetic_study.h>
 
 #include <algorithm>

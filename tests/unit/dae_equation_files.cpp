@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/equations/equation_file.h>
-#include <momenta/dae/equations/equation_start.h>
-#include <momenta/dae/equations/suite.h>
+#include <momenta/dae/analysis/equations/equation_file.h>
+#include <momenta/dae/analysis/equations/equation_start.h>
+#include <momenta/dae/analysis/equations/suite.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // bounds as the coordinate does, however the joint is turned, and say when they are beyond.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/report/figure.h>
-#include <momenta/dae/study/motion.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/dae/output/figure.h>
+#include <momenta/dae/run/motion.h>
 
 namespace momenta::dae_figure_limits {
 namespace {

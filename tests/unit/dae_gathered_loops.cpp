@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/model.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
 #include <vector>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/csv.h>
+#include <momenta/dae/output/csv.h>
 #include <momenta/dae/study/run_record.h>
 
 #include <cstring>

@@ -6,11 +6,11 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/core/scalar/quad.h>
-#include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/dae/form/dae_form.h>
-#include <momenta/dae/loop/pair_of_loop.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/loop/pair_of_loop.h>
+#include <momenta/dae/mechanism/mechanism.h>
 
 #include <numbers>
 

@@ -5,8 +5,8 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <numbers>
 

@@ -10,7 +10,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>

@@ -10,10 +10,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/dae_form.h>
-#include <momenta/dae/solver/local_newton.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/local_newton.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <Eigen/LU>
 

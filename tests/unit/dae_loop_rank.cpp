@@ -9,14 +9,14 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/analysis/linear/spectrum.h>
 #include <momenta/dae/kkt/loop_units.h>
-#include <momenta/dae/linear/spectrum.h>
-#include <momenta/dae/measure/rank.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/run/state_values.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/index_study.h>
-#include <momenta/dae/study/run_form.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <algorithm>
 #include <cmath>

@@ -11,8 +11,8 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/sweeps/branches/looped_branches.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/branches/looped_branches.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/Dense>
 

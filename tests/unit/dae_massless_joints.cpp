@@ -10,15 +10,15 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/toml/parse_scene.h>
-#include <momenta/dae/assembly/assembly.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/kkt/unheld_joints.h>
-#include <momenta/dae/study/run_form.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/run/state_values.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <Eigen/SVD>
 

@@ -9,10 +9,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/unheld_joints.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <chrono>
 

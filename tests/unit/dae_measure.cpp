@@ -1,10 +1,10 @@
 // Growth laws read from noisy data, reference files and what is wrong with them.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/measure/growth.h>
-#include <momenta/dae/measure/reference.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/run/measure/growth.h>
+#include <momenta/dae/run/measure/reference.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <cmath>
 #include <filesystem>

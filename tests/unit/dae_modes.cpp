@@ -4,10 +4,10 @@
 #include "equations/refusal.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/linear/linearisation.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/study/modes_study.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <Eigen/Dense>
 #include <cmath>

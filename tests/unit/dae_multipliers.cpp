@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/measure/rank.h>
-#include <momenta/dae/report/chart.h>
-#include <momenta/dae/report/json.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/output/chart.h>
+#include <momenta/dae/output/json.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/run_form.h>
 
 #include <algorithm>
 #include <map>

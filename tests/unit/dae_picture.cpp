@@ -2,13 +2,13 @@
 // kernel, gaps are the point rows of Φ, films are made without disturbing the run, and what a page
 // is given reads back to all of it within its quantisation.
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/picture_data.h>
-#include <momenta/dae/study/motion.h>
-#include <momenta/dae/study/run_form.h>
-#include <momenta/dae/study/upright.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/open_chain/open_chain.h>
+#include <momenta/dae/output/picture_data.h>
+#include <momenta/dae/run/motion.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/run/upright.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <array>
 #include <cmath>

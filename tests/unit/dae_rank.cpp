@@ -7,9 +7,9 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/measure/rank.h>
-#include <momenta/dae/measure/reactions.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/measure/reactions.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 namespace momenta::dae_rank {
 namespace {

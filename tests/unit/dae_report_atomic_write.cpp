@@ -1,6 +1,6 @@
 // A result file is whole or not there.
 #include <gtest/gtest.h>
-#include <momenta/dae/report/part_file.h>
+#include <momenta/dae/output/part_file.h>
 
 #include <unistd.h>
 

@@ -4,12 +4,12 @@
 #include "equations/output_of.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/page.h>
-#include <momenta/dae/report/part_file.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/output/page.h>
+#include <momenta/dae/output/part_file.h>
+#include <momenta/dae/run/motion.h>
 #include <momenta/dae/study/modes_study.h>
-#include <momenta/dae/study/motion.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 #include <unit/page/firefox.h>
 #include <unit/page/synthetic_study.h>
 

@@ -1,6 +1,6 @@
 // The first sentences of a page must be true of its data, whatever the data are.
 #include <gtest/gtest.h>
-#include <momenta/dae/report/conclusion.h>
+#include <momenta/dae/output/conclusion.h>
 #include <unit/page/synthetic_study.h>
 
 namespace momenta::dae_report_conclusion {

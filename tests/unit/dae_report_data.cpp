@@ -1,9 +1,9 @@
 // Results for other programs: JSON keys and nulls, CSV cells and digits.
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/csv.h>
-#include <momenta/dae/report/json.h>
-#include <momenta/dae/study/run_quantities.h>
+#include <momenta/dae/output/csv.h>
+#include <momenta/dae/output/json.h>
+#include <momenta/dae/run/run_quantities.h>
 #include <unit/page/synthetic_study.h>
 
 #include <algorithm>

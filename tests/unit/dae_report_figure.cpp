@@ -1,8 +1,8 @@
 // Figures for papers: well-formed, without script, and every point of a curve one of the data.
 #include <gtest/gtest.h>
-#include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/run_label.h>
-#include <momenta/dae/report/svg.h>
+#include <momenta/dae/output/figure.h>
+#include <momenta/dae/output/run_label.h>
+#include <momenta/dae/output/svg.h>
 #include <unit/page/synthetic_study.h>
 
 #include <regex>

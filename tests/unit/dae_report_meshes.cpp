@@ -3,12 +3,12 @@
 
 #include "equations/scene_folder.h"
 
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/meshes.h>
-#include <momenta/dae/report/picture_data.h>
-#include <momenta/dae/report/still.h>
-#include <momenta/dae/study/motion.h>
+#include <momenta/dae/output/figure.h>
+#include <momenta/dae/output/meshes.h>
+#include <momenta/dae/output/picture_data.h>
+#include <momenta/dae/output/still.h>
+#include <momenta/dae/run/motion.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <numbers>
 

@@ -2,9 +2,9 @@
 // a name.
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/page.h>
-#include <momenta/dae/report/page_data.h>
-#include <momenta/dae/report/sampled_curves.h>
+#include <momenta/dae/output/page.h>
+#include <momenta/dae/output/page_data.h>
+#include <momenta/dae/output/sampled_curves.h>
 #include <unit/page/synthetic_study.h>
 
 #include <nlohmann/json.hpp>

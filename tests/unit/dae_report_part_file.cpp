@@ -1,7 +1,7 @@
 // FILE.part: replaced after a kill, its process's own, and whole lines where there is no more room.
 #include <gtest/gtest.h>
-#include <momenta/dae/report/part_file.h>
-#include <momenta/dae/report/trajectory_file.h>
+#include <momenta/dae/output/part_file.h>
+#include <momenta/dae/output/trajectory_file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

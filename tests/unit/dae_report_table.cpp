@@ -1,9 +1,9 @@
 // The table on the terminal, and the numbers as text that every report is made of.
 #include <gtest/gtest.h>
+#include <momenta/core/text/number_text.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/report/run_label.h>
-#include <momenta/dae/report/table.h>
-#include <momenta/dae/text/number_text.h>
+#include <momenta/dae/output/run_label.h>
+#include <momenta/dae/output/table.h>
 #include <unit/page/synthetic_study.h>
 
 #include <algorithm>

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/solver_choice.h>
-#include <momenta/dae/loop/shared_points.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/mechanism/loop/shared_points.h>
 
 #include <algorithm>
 #include <numeric>

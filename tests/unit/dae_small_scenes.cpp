@@ -8,11 +8,11 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/report/page.h>
-#include <momenta/dae/report/table.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/output/page.h>
+#include <momenta/dae/output/table.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/drift_study.h>
-#include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
 #include <filesystem>

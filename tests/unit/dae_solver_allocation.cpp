@@ -7,10 +7,10 @@
 #include "equations/examples.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integration.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/integration.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <cmath>
 #include <cstdlib>

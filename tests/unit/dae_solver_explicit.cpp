@@ -2,7 +2,7 @@
 // and failures as values.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/integrator/integration.h>
 
 #include <cmath>
 #include <functional>

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/integrators.h>
-#include <momenta/dae/solver/newton_matrix.h>
-#include <momenta/dae/solver/radau5_stages.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/integrator/integrators.h>
+#include <momenta/dae/integrator/newton_matrix.h>
+#include <momenta/dae/integrator/radau5_stages.h>
+#include <momenta/dae/run/run_form.h>
 
 #include "equations/cartesian_pendulum.h"
 #include "equations/ensemble.h"

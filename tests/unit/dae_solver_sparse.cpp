@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/form/dae_form.h>
-#include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/newton_matrix.h>
-#include <momenta/dae/solver/system.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/integrator/implicit_methods.h>
+#include <momenta/dae/integrator/newton_matrix.h>
+#include <momenta/dae/integrator/system.h>
+#include <momenta/dae/run/run_form.h>
 
 #include "equations/ensemble.h"
 #include "equations/examples.h"

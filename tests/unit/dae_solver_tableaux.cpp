@@ -11,15 +11,14 @@
 // II.2 (theorem 2.13), II.6 (dense output).
 
 #include <gtest/gtest.h>
-#include <momenta/dae/solver/tableau_dop853.h>
-#include <momenta/dae/solver/tableau_dp5.h>
-#include <momenta/dae/solver/tableau_rk4.h>
-#include <momenta/dae/solver/tableau_vern9.h>
+#include <momenta/dae/integrator/tableau_dop853.h>
+#include <momenta/dae/integrator/tableau_dp5.h>
+#include <momenta/dae/integrator/tableau_rk4.h>
+#include <momenta/dae/integrator/tableau_vern9.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
 
 namespace momenta::dae_solver_tableaux {
 namespace {

@@ -8,10 +8,10 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/open_chain.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/joint_places.h>
-#include <momenta/dae/study/state_values.h>
+#include <momenta/core/open_chain/open_chain.h>
+#include <momenta/dae/mechanism/joint_places.h>
+#include <momenta/dae/run/state_values.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 namespace momenta::dae_state_values {
 namespace {

@@ -2,7 +2,7 @@
 // slow and why; what it counts, and that neither threads nor an interruption change what it has.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/report/stress_report.h>
+#include <momenta/dae/output/stress_report.h>
 
 #include "equations/examples.h"
 

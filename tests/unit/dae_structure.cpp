@@ -1,8 +1,8 @@
 // Structural analysis against what is obviously right: all permutations, all offsets in turn.
 
 #include <gtest/gtest.h>
-#include <momenta/dae/structure/assignment.h>
-#include <momenta/dae/structure/sigma_method.h>
+#include <momenta/dae/algebra/structure/assignment.h>
+#include <momenta/dae/algebra/structure/sigma_method.h>
 
 #include <algorithm>
 #include <numeric>

@@ -5,11 +5,11 @@
 #include "equations/examples.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/study/timing.h>
+#include <momenta/dae/topology/assembly/assembly.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
 
 #include <cmath>
 #include <filesystem>

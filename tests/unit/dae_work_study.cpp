@@ -6,17 +6,17 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/format/files/read_scene.h>
+#include <momenta/dae/integrator/extrapolation.h>
+#include <momenta/dae/integrator/radau_collocation.h>
 #include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/measure/growth.h>
-#include <momenta/dae/report/advice.h>
-#include <momenta/dae/report/table.h>
-#include <momenta/dae/solver/extrapolation.h>
-#include <momenta/dae/solver/radau_collocation.h>
-#include <momenta/dae/study/force_columns.h>
+#include <momenta/dae/output/advice.h>
+#include <momenta/dae/output/table.h>
+#include <momenta/dae/run/force_columns.h>
+#include <momenta/dae/run/measure/growth.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/quad_motion.h>
-#include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <cmath>

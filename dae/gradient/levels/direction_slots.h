@@ -1,9 +1,10 @@
 #pragma once
 // Slots of one state and one direction: values and derivatives fill registers each, as the values
-// of one state do (dae/sweeps/slots/slots.h). Sweeps choose by values, and derivatives come along.
+// of one state do (dae/kkt/sweeps/slots/slots.h). Sweeps choose by values, and derivatives come
+// along.
 
 #include <momenta/core/scalar/dual.h>
-#include <momenta/dae/sweeps/slots/slots.h>
+#include <momenta/dae/kkt/sweeps/slots/slots.h>
 
 namespace momenta {
 

@@ -5,7 +5,7 @@
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_joint.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <memory>
 

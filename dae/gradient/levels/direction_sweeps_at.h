@@ -3,8 +3,8 @@
 // as core/kernel/levels/open_sweeps_at.h says why.
 
 #include <momenta/dae/gradient/levels/direction_sweeps.h>
-#include <momenta/dae/sweeps/planar_loop_sweeps.h>
-#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/spatial_loop_sweeps.h>
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/dae/gradient/levels/placed_along.h>
-#include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/mechanism/loop/loop_model.h>
 
 #include <array>
 #include <vector>

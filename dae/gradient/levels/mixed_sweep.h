@@ -3,7 +3,7 @@
 // x86-64 levels as the sweeps of a run are.
 
 #include <momenta/core/kernel/model.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
 #include <memory>

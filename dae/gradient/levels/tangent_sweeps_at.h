@@ -6,8 +6,8 @@
 #include <momenta/dae/gradient/levels/direction_slots.h>
 #include <momenta/dae/gradient/levels/number_sweep_at.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
-#include <momenta/dae/sweeps/planar_loop_sweeps.h>
-#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/kkt/sweeps/spatial_loop_sweeps.h>
 
 #include <vector>
 

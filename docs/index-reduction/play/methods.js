@@ -8,7 +8,7 @@
 //   momentum    (7), (8) with gauge leak κ                     RK4
 //
 // They are the program's forms acceleration-index3, acceleration-index2, acceleration, baumgarte, projected and momentum,
-// with its integrators generalised-alpha, hem5 and rk4: dae/form, dae/solver, where the sources are.
+// with its integrators generalised-alpha, hem5 and rk4: dae/form, dae/integrator, where the sources are.
 "use strict";
 
 // ---- linear algebra of a few rows
@@ -144,7 +144,7 @@ function momentumForm(s, start, { h, kappa }) {
   };
 }
 
-// ---- index 2: half-explicit Runge-Kutta on the stages of Dormand and Prince (dae/solver/tableau_hem5.h)
+// ---- index 2: half-explicit Runge-Kutta on the stages of Dormand and Prince (dae/integrator/tableau_hem5.h)
 
 const root19 = Math.sqrt(19);
 const stages = [
@@ -201,7 +201,7 @@ function index2Form(s, start, { h }) {
   };
 }
 
-// ---- index 3: generalised-α (dae/solver/newmark.h)
+// ---- index 3: generalised-α (dae/integrator/newmark.h)
 
 function index3Form(s, start, { h, radius = 0.8 }) {
   const am = (2 * radius - 1) / (radius + 1), af = radius / (radius + 1);

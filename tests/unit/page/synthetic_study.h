@@ -3,7 +3,7 @@
 // with a ripple, an oscillating energy error, counters and times of a plausible size.
 // Deterministic.
 
-#include <momenta/dae/study/run_result.h>
+#include <momenta/dae/run/run_result.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,304 @@
+#include <momenta/core/text/number_text.h>
+#include <momenta/dae/integrator/stopping.h>
+#include <momenta/dae/output/advice.h>
+#include <momenta/dae/output/conclusion.h>
+#include <momenta/dae/output/csv.h>
+#include <momenta/dae/output/page.h>
+#include <momenta/dae/output/part_file.h>
+#include <momenta/dae/output/table.h>
+#include <momenta/dae/run/measure/rank.h>
+#include <momenta/dae/run/passed_limits.h>
+#include <momenta/dae/run/run_form.h>
+#include <momenta/dae/study/timing.h>
+#include <momenta/dae/topology/assembly/start_accelerations.h>
+#include <momenta/dae/topology/cut/integrated_scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "equation_verbs.h"
+#include "kept_run.h"
+#include "loading.h"
+#include "progress.h"
+#include "results.h"
+#include "verb.h"
+
+namespace momenta::program {
+namespace {
+
+constexpr int most_drawn = 4000;  // samples in a page
+
+void print_singular_crossings(const RunResult& result) {
+  constexpr std::size_t most = 12;
+  if (result.singular_crossings.empty()) return;
+  std::string times;
+  for (std::size_t i = 0; i < result.singular_crossings.size() && i < most; ++i)
+    times += (i == 0 ? "" : ", ") + compact(result.singular_crossings[i].t, 4);
+  std::printf("\nClose to singular poses at t = %s%s s, least pivot %s\n", times.c_str(),
+              result.singular_crossings.size() > most ? ", …" : "",
+              scientific(result.least_pivot, 1).c_str());
+  for (const RunResult::SingularCrossing& crossing : result.singular_crossings)
+    if (crossing.ambiguous) {
+      std::printf("Ambiguous: %s\n", ambiguous_from(crossing.t).c_str());
+      break;
+    }
+}
+
+/// Rank at the start, and singular poses of the run.
+void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& result) {
+  if (a.rank < mechanism.m()) {
+    constexpr std::size_t most = 6;
+    std::string rows;
+    for (std::size_t i = 0; i < a.dependent_rows.size() && i < most; ++i)
+      rows += (i == 0 ? "" : "; ") + row_in_words(mechanism, a.dependent_rows[i]);
+    std::printf("\nLoop equations: rank %d of %d at the start, redundant: %s%s\n", a.rank,
+                mechanism.m(), rows.c_str(), a.dependent_rows.size() > most ? "; …" : "");
+  }
+  if (!a.residue.empty()) std::printf("\n%s\n", a.residue.c_str());
+  if (result.weak_evaluations > 0)
+    std::printf(
+        "\nNear a singular pose, or with equations that are nearly redundant, in %ld of %ld "
+        "right-hand sides: more loop equations faded there than are redundant at the start "
+        "(faded_rows)\n",
+        result.weak_evaluations, result.counters.evaluations);
+}
+
+/// Events with number and times.
+void print_events(const Scene& scene, const RunResult& result) {
+  constexpr std::size_t most = 8;
+  for (std::size_t i = 0; i < scene.events.size(); ++i) {
+    const std::string name = name_of(scene.events[i], i);
+    std::string times;
+    std::size_t count = 0;
+    for (const FoundEvent& e : result.events) {
+      if (e.name != name) continue;
+      if (count < most)
+        times += (count == 0 ? "" : ", ") + compact(e.t, 8) + (e.up ? " up" : " down");
+      ++count;
+    }
+    if (i == 0) std::printf("\n");
+    if (count == 0)
+      std::printf("Event '%s': not met\n", name.c_str());
+    else
+      std::printf("Event '%s': %zu, at t [s] = %s%s\n", name.c_str(), count, times.c_str(),
+                  count > most ? ", …" : "");
+  }
+  if (result.status == "event") std::printf("%s\n", result.reason.c_str());
+}
+
+/// Impacts of rigid stops, and times at which they held their coordinates.
+void print_stops(const RunResult& result) {
+  std::map<std::pair<std::string, double>, std::vector<const StopContact*>> by_stop;
+  for (const StopContact& s : result.stops) by_stop[{s.joint, s.limit}].push_back(&s);
+  if (!by_stop.empty()) std::printf("\n");
+  for (const auto& [stop, all] : by_stop) {
+    std::size_t impacts = 0;
+    std::string first, held;
+    for (const StopContact* s : all) {
+      if (s->what == "impact" && impacts++ == 0) first = compact(s->t, 8);
+      if (s->what == "held") held += (held.empty() ? "" : ", ") + compact(s->t, 8) + " s";
+      if (s->what == "released") held += " to " + compact(s->t, 8) + " s";
+    }
+    std::printf("Stop of joint '%s' at %s: %zu impacts%s%s\n", stop.first.c_str(),
+                compact(stop.second, 6).c_str(), impacts,
+                first.empty() ? "" : (", the first at t = " + first + " s").c_str(),
+                held.empty() ? "" : ("; held from t = " + held).c_str());
+  }
+}
+
+/// "C.lambda1, C.lambda2": columns that are not unique, and at how many samples.
+void print_undetermined(const RunResult& result) {
+  std::map<long, std::string> by_samples;
+  for (const RunResult::Undetermined& u : result.undetermined) {
+    std::string& names = by_samples[u.samples];
+    names += (names.empty() ? "" : ", ") + u.column.substr(0, u.column.rfind(" ["));
+  }
+  for (const auto& [samples, names] : by_samples)
+    std::printf("\nNot unique at %s: %s\n",
+                samples == static_cast<long>(result.series.t.size())
+                    ? "any sample"
+                    : (std::to_string(samples) + " samples").c_str(),
+                names.c_str());
+}
+
+/// The files of a run: the trajectory, written during the run, and a summary with reserved room.
+class RunFiles {
+ public:
+  /// @throws std::invalid_argument, std::runtime_error
+  RunFiles(const Options& o, const Mechanism& mechanism, const RunSettings& settings)
+      : o_(o),
+        kept_(o, trajectory_columns(mechanism, o.reactions).size()),
+        trajectory_(trajectory_file(o, mechanism, settings, kept_.trajectory())) {
+    if (!trajectory_) return;
+    summary_.emplace(o.out / "summary.json");
+    if (!summary_->reserve(summary_room)) throw std::runtime_error(summary_->problem());
+    kept_.begin();
+    if (kept_.from()) last_row_ = kept_.from()->so_far.trajectory.rows.back();
+  }
+
+  bool write(const std::vector<double>& row) {
+    if (!trajectory_) return true;
+    last_row_ = row;
+    return trajectory_->write(row);
+  }
+  /// Where to continue; null: at the start.
+  const Checkpoint* from() const { return kept_.from(); }
+  /// Takes a checkpoint between two steps.
+  void note(const std::function<Checkpoint()>& make) {
+    if (trajectory_) kept_.note(*trajectory_, last_row_, make);
+  }
+  bool flush() { return !trajectory_ || trajectory_->flush(); }
+  /// Why rows could not be written; empty: all were.
+  std::string problem() const { return trajectory_ ? trajectory_->problem() : ""; }
+
+  /// Gives files their names, `others` too if there is room; else prints the sentence and returns
+  /// false. `over`: the run will not continue.
+  bool finish(const std::string& summary, const std::vector<ResultFile>& others, bool over) {
+    if (!trajectory_) return true;
+    const bool told = !problem().empty();  // why the run ended
+    if (!trajectory_->finish(summary)) return !told && complain(problem());
+    summary_->append(summary);
+    const bool all = summary_->put_in_place() || complain(summary_->problem());
+    // A file of an earlier run would contradict them.
+    std::error_code ignored;
+    std::filesystem::remove(o_.out / (o_.data == "hdf5" ? "trajectory.csv" : "run.h5"), ignored);
+    if (write_results(others)) {
+      if (all && over) kept_.remove();
+      return all;
+    }
+    for (const ResultFile& other : others) std::filesystem::remove(other.path, ignored);
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t summary_room = 1 << 16;
+  static bool complain(const std::string& sentence) {
+    std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
+    return false;
+  }
+
+  const Options& o_;
+  KeptRun kept_;
+  std::unique_ptr<TrajectoryFile> trajectory_;
+  std::vector<double> last_row_;
+  std::optional<PartFile> summary_;
+};
+
+int run(const Options& o) {
+  const double limit = o.cpu_limit.value_or(0);
+  const CpuLimit before(limit);
+  const auto mechanism = load(o);
+  const auto reference = load_reference(o, *mechanism);
+  const Assembly a = assemble(*mechanism);
+  const IntegratedScene integrated(*mechanism, a.start);
+  RunRequest request;
+  request.settings = run_settings(o, mechanism->scene().run);
+  request.integrated = &integrated;
+  const RunSettings& s = request.settings;
+  request.reference = reference.get();
+  request.keep_trajectory = true;
+  request.reactions = o.reactions;
+  request.multipliers = true;
+  request.events = true;
+  // Time before the run counts.
+  if (limit > 0) request.max_cpu_seconds = std::max(1e-3, limit - thread_seconds());
+  request.film_intervals = film_intervals_of(*mechanism, o, 1);
+  expect_own_results(o.out, "trajectory.csv");
+  RunFiles files(o, *mechanism, s);
+  // The page draws a part; memory does not grow with the trajectory.
+  if (o.data == "hdf5") request.keep_every = 1 + s.samples / most_drawn;
+  request.on_row = [&](const std::vector<double>& row) { return files.write(row); };
+  request.from = files.from();
+  if (!o.out.empty()) request.between_steps = [&](const auto& make) { files.note(make); };
+  ProgressLine line(o.quiet);
+  request.progress = [&](double t) {
+    line.show(s.form + "  t = " + std::to_string(t) + " s");
+    return !interrupted();
+  };
+  request.going_on = [&] { return !interrupted() && files.problem().empty(); };
+  watch_signals();
+  StudyResult study;
+  {
+    // A run checks its time between steps, and one step of a large mechanism may take long: it is
+    // stopped half a limit later, at least a second.
+    const double more = request.max_cpu_seconds + std::max(1.0, 0.5 * limit);
+    const CpuLimit within_steps(limit > 0 ? more : 0, limit - request.max_cpu_seconds);
+    study.runs.push_back(run_form(*mechanism, a.start, request));
+  }
+  RunResult& result = study.runs.front();
+  if (!files.flush()) result.status = "failed";
+  if (!interrupted())
+    time_runs(integrated.mechanism(), integrated.start(), study.runs,
+              {.how = timing_named(o.timing),
+               .budget = 3,
+               .max_cpu_seconds = limit,
+               .going_on = {},
+               .at_step = request.going_on});
+  line.show("");
+  study.reference = o.reference.string();
+  describe(study, o, *mechanism, a);
+  const std::string there = " at t = " + std::to_string(result.stopped_at) + " s";
+  if (!files.problem().empty())
+    result.reason = there.substr(1) + ": " + files.problem();
+  else if (interrupted() && !finished(result))
+    result.reason = "interrupted" + there;
+  auto json = summary_json(result, study.environment);
+  json["assembly"] = {{"moved", a.moved},
+                      {"branch", a.branch},
+                      {"residue", a.residue},
+                      {"rates", replaced_rates_in_words(*mechanism, a.start)}};
+  const std::string summary = json.dump(2) + "\n";
+  std::vector<ResultFile> others;
+  if (!o.out.empty()) others.push_back({o.out / "index.html", run_page(study)});
+  if (!o.out.empty() && !mechanism->scene().events.empty())
+    others.push_back({o.out / "events.csv", events_csv(result)});
+  if (!o.figures.empty()) add_figures(others, figures_of_run(study), o);
+  const bool over = files.problem().empty() && (finished(result) || !interrupted());
+  const bool written = files.finish(summary, others, over);
+  if (o.json) {
+    std::fputs(summary.c_str(), stdout);
+  } else if (!o.quiet) {
+    if (const std::string first = reservations(study); !first.empty())
+      std::printf("%s\n\n", first.c_str());
+    std::fputs(drift_table(study).c_str(), stdout);
+    print_integrated(study);
+    print_rank(*mechanism, a, result);
+    print_singular_crossings(result);
+    print_undetermined(result);
+    print_events(mechanism->scene(), result);
+    print_stops(result);
+    if (const std::string stiff = stiffness_in_words(result); !stiff.empty())
+      std::printf("\n%s\n", stiff.c_str());
+    if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
+  }
+  for (const std::string& sentence :
+       o.quiet ? std::vector<std::string>{} : in_words(result.passed_limits))
+    std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
+  if (!o.quiet)
+    for (const std::string& sentence : result.event_remarks)
+      std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
+  if (!finished(result))
+    std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
+  return written && finished(result) ? done : run_failed;
+}
+
+}  // namespace
+
+Verb declare_run(CLI::App& app, Options& o) {
+  CLI::App& verb = add_verb(app, "run", "One form, one integrator",
+                            "momenta run examples/four_bar/scene.toml --end 20 --out results");
+  add_scene(verb, o);
+  add_form(verb, o);
+  add_run_options(verb, o);
+  add_timing(verb, o);
+  one_of(verb.add_option("--data", o.data, "Format of the trajectory; reactions too"),
+         {"csv", "hdf5"})
+      ->capture_default_str();
+  verb.add_flag("--reactions", o.reactions, "With the reactions of joints as columns");
+  return {&verb, [&o] { return run(o); }, [&o] { return run_equation_file(o); }};
+}
+
+}  // namespace momenta::program
