@@ -4,7 +4,7 @@
 #include <momenta/core/expression/simplify.h>
 #include <momenta/core/expression/spline.h>
 #include <momenta/core/expression/tape.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include <momenta/core/expression/formula_text.h>
 #include <momenta/core/expression/function_names.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <momenta/core/expression/function_names.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 #include <momenta/core/expression/parser.h>
 #include <momenta/core/expression/scanner.h>
 #include <momenta/core/expression/tape.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <map>
 #include <numbers>

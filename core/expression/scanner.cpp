@@ -1,7 +1,7 @@
 #include <momenta/core/expression/expression.h>
 #include <momenta/core/expression/function_names.h>
 #include <momenta/core/expression/scanner.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <charconv>
 

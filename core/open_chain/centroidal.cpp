@@ -3,21 +3,20 @@
 
 namespace momenta {
 
-struct CentroidalSweep::Inside {
+struct CentroidalSweep::Impl {
   Model<Spatial> model;
   Workspace<Spatial, double> w;
-  Inside(const Tree& tree, const Scene& scene)
-      : model(build_spatial_model(tree, scene)), w(model) {}
+  Impl(const Tree& tree, const Scene& scene) : model(build_spatial_model(tree, scene)), w(model) {}
 };
 
 CentroidalSweep::CentroidalSweep(const Tree& tree, const Scene& scene)
-    : inside_(std::make_unique<Inside>(tree, scene)) {}
+    : impl_(std::make_unique<Impl>(tree, scene)) {}
 CentroidalSweep::~CentroidalSweep() = default;
 CentroidalSweep::CentroidalSweep(CentroidalSweep&&) noexcept = default;
 CentroidalSweep& CentroidalSweep::operator=(CentroidalSweep&&) noexcept = default;
 
 Centroidal CentroidalSweep::operator()(double t, const double* q, const double* u) {
-  return centroidal_of(centroidal_sums(inside_->w, t, q, u));
+  return centroidal_of(centroidal_sums(impl_->w, t, q, u));
 }
 
 Centroidal centroidal(const Tree& tree, const Scene& scene, double t, const Eigen::VectorXd& q,

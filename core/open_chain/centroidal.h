@@ -34,8 +34,8 @@ class CentroidalSweep {
   Centroidal operator()(double t, const double* q, const double* u);
 
  private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// The same at one state (t, q, u), building the model for this call.

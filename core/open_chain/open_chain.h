@@ -156,8 +156,8 @@ class OpenChain {
   std::string failure() const;
 
  private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace momenta

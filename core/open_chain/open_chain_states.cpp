@@ -3,7 +3,7 @@
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/place_links.h>
-#include <momenta/core/open_chain/open_chain_inside.h>
+#include <momenta/core/open_chain/open_chain_impl.h>
 
 #include <array>
 #include <limits>
@@ -34,24 +34,24 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
   expect_size("rates_of_states", "a row of qdot", qdot.cols(), q.cols());
   expect_size("rates_of_states", "a row of pdot", pdot.cols(), q.cols());
   if (!std::isfinite(t)) throw std::invalid_argument("rates_of_states: t is not finite");
-  const bool all = inside_->visit([&](auto& kernel) {
+  const bool all = impl_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
         stride == qdot.outerStride() && stride == pdot.outerStride())
-      return inside_->batch(
+      return impl_->batch(
           kernel, t, threads,
           {q.data(), p.data(), qdot.data(), pdot.data(), stride,
            static_cast<std::size_t>(q.cols())},
           [t](BatchSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
     Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
-    return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
+    return impl_->one_by_one(q.cols(), [&](Eigen::Index i) {
       const bool ok = rates(t, q.col(i), p.col(i), one_qdot, one_pdot);
       qdot.col(i) = ok ? one_qdot : one_qdot.setConstant(nothing);
       pdot.col(i) = ok ? one_pdot : one_pdot.setConstant(nothing);
       return ok;
     });
   });
-  return inside_->told_of_state(all, q, "p", p);
+  return impl_->told_of_state(all, q, "p", p);
 }
 
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
@@ -64,20 +64,20 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
     if (pdot.allFinite()) return true;
   }
   Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
-  const bool all = inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
+  const bool all = impl_->one_by_one(q.cols(), [&](Eigen::Index i) {
     const bool ok = rates(t, q.col(i), p.col(i), tau.col(i), one_qdot, one_pdot);
     qdot.col(i) = ok ? one_qdot : one_qdot.setConstant(nothing);
     pdot.col(i) = ok ? one_pdot : one_pdot.setConstant(nothing);
     return ok;
   });
-  return inside_->told_of_state(all, q, "p", p, "tau", tau);
+  return impl_->told_of_state(all, q, "p", p, "tau", tau);
 }
 
 /// `tau` may be null.
-bool OpenChain::Inside::accelerations_of_states(OpenChain& chain, double t, const ConstStatesRef& q,
-                                                const ConstStatesRef& rates,
-                                                const ConstStatesRef* tau, StatesRef udot,
-                                                int threads) {
+bool OpenChain::Impl::accelerations_of_states(OpenChain& chain, double t, const ConstStatesRef& q,
+                                              const ConstStatesRef& rates,
+                                              const ConstStatesRef* tau, StatesRef udot,
+                                              int threads) {
   const char* call = "accelerations_of_states";
   const int nq = tree.nq, nv = tree.nv;
   check_threads(threads);
@@ -113,11 +113,11 @@ bool OpenChain::Inside::accelerations_of_states(OpenChain& chain, double t, cons
 
 bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
                                         StatesRef udot, int threads) {
-  return inside_->accelerations_of_states(*this, t, q, u, nullptr, udot, threads);
+  return impl_->accelerations_of_states(*this, t, q, u, nullptr, udot, threads);
 }
 bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
                                         const ConstStatesRef& tau, StatesRef udot, int threads) {
-  return inside_->accelerations_of_states(*this, t, q, u, &tau, udot, threads);
+  return impl_->accelerations_of_states(*this, t, q, u, &tau, udot, threads);
 }
 
 // Outputs of a chain beside its motion: energies, sums over bodies, reactions, mass matrix, poses.
@@ -156,33 +156,33 @@ Reaction reaction_of(const Tree::Body& body, const Model<Planar>& model,
 Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVectorRef& u) {
   expect_size("energies", "q", q.size(), nq());
   expect_size("energies", "u", u.size(), nv());
-  expect_given_finite("energies", inside_->not_a_number, t, {"q", q}, {"u", u});
-  const Energies all = inside_->visit([&](auto& kernel) {
+  expect_given_finite("energies", impl_->not_a_number, t, {"q", q}, {"u", u});
+  const Energies all = impl_->visit([&](auto& kernel) {
     Energies e;
-    momenta_from_rates(kernel.w, t, q.data(), u.data(), inside_->p.data());
+    momenta_from_rates(kernel.w, t, q.data(), u.data(), impl_->p.data());
     poses_outward(kernel.w, t, q.data(), true);
     e.kinetic = kinetic_energy(kernel.w);
     e.potential = potential_energy(kernel.w, q.data());
-    e.hamiltonian = inside_->p.dot(u) - e.kinetic + e.potential;
+    e.hamiltonian = impl_->p.dot(u) - e.kinetic + e.potential;
     return e;
   });
   const std::array found{all.kinetic, all.potential, all.hamiltonian};
-  expect_found_finite("energies", inside_->not_a_number, found);
+  expect_found_finite("energies", impl_->not_a_number, found);
   return all;
 }
 
 bool OpenChain::centroidal(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                            Centroidal& all) {
-  const double* u = inside_->u.data();
-  if (!velocities(t, q, p, inside_->u)) return false;
-  if (auto* in_space = std::get_if<Kernel<Spatial>>(&inside_->kernel)) {
+  const double* u = impl_->u.data();
+  if (!velocities(t, q, p, impl_->u)) return false;
+  if (auto* in_space = std::get_if<Kernel<Spatial>>(&impl_->kernel)) {
     all = centroidal_of(centroidal_sums(in_space->w, t, q.data(), u));
   } else {
-    if (!inside_->in_space)
-      inside_->in_space = std::make_unique<CentroidalSweep>(inside_->tree, *inside_->flat);
-    all = (*inside_->in_space)(t, q.data(), u);
+    if (!impl_->in_space)
+      impl_->in_space = std::make_unique<CentroidalSweep>(impl_->tree, *impl_->flat);
+    all = (*impl_->in_space)(t, q.data(), u);
   }
-  std::string& failure = inside_->not_a_number;
+  std::string& failure = impl_->not_a_number;
   return (all.mass == 0 || found_finite(failure, all.centre)) &&
          found_finite(failure, all.linear_momentum, all.angular_momentum);
 }
@@ -191,12 +191,12 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
                                            const ConstVectorRef& u) {
   expect_size("reactions", "q", q.size(), nq());
   expect_size("reactions", "u", u.size(), nv());
-  expect_given_finite("reactions", inside_->not_a_number, t, {"q", q}, {"u", u});
-  const std::vector<Reaction> found = inside_->visit([&](auto& kernel) {
+  expect_given_finite("reactions", impl_->not_a_number, t, {"q", q}, {"u", u});
+  const std::vector<Reaction> found = impl_->visit([&](auto& kernel) {
     std::vector<Reaction> all;
     Eigen::VectorXd p(nv()), rates(nv()), pdot(nv()), qdot(nq());
     momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data());
-    if (!inside_->momentum(kernel, t, q.data(), p.data(), rates.data(), pdot.data())) return all;
+    if (!impl_->momentum(kernel, t, q.data(), p.data(), rates.data(), pdot.data())) return all;
     momenta::coordinate_rates(*kernel.model, q.data(), u.data(), qdot.data());
     auto& pass = kernel.reactions.get(*kernel.links);
     pass(t, q.data(), qdot.data(), p.data(), pdot.data());
@@ -208,26 +208,26 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
     return all;
   });
   for (const Reaction& r : found)
-    expect_found_finite("reactions", inside_->not_a_number, r.force, r.torque);
+    expect_found_finite("reactions", impl_->not_a_number, r.force, r.torque);
   return found;
 }
 
 Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
   expect_size("mass_matrix", "q", q.size(), nq());
-  expect_given_finite("mass_matrix", inside_->not_a_number, t, {"q", q});
+  expect_given_finite("mass_matrix", impl_->not_a_number, t, {"q", q});
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(nv(), nv());
-  inside_->visit([&](auto& kernel) {
+  impl_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), false);
     mass_matrix_inward(kernel.w, [&](int i, int j, double value) { m(i, j) = m(j, i) = value; });
   });
-  expect_found_finite("mass_matrix", inside_->not_a_number, m);
+  expect_found_finite("mass_matrix", impl_->not_a_number, m);
   return m;
 }
 
 std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& q) {
   expect_size("poses", "q", q.size(), nq());
-  expect_given_finite("poses", inside_->not_a_number, t, {"q", q});
-  const std::vector<Eigen::Isometry3d> found = inside_->visit([&](auto& kernel) {
+  expect_given_finite("poses", impl_->not_a_number, t, {"q", q});
+  const std::vector<Eigen::Isometry3d> found = impl_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), true);
     std::vector<Eigen::Isometry3d> all;
     for (std::size_t k = 0; k < tree().bodies.size(); ++k)
@@ -235,7 +235,7 @@ std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& 
     return all;
   });
   for (const Eigen::Isometry3d& pose : found)
-    expect_found_finite("poses", inside_->not_a_number, pose.matrix());
+    expect_found_finite("poses", impl_->not_a_number, pose.matrix());
   return found;
 }
 

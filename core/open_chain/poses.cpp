@@ -4,20 +4,19 @@
 
 namespace momenta {
 
-struct Poses::Inside {
+struct Poses::Impl {
   Tree tree;
   Model<Spatial> model;
   Workspace<Spatial, double> w;
-  Inside(Tree of, const Scene& scene)
+  Impl(Tree of, const Scene& scene)
       : tree(std::move(of)), model(build_spatial_model(tree, scene)), w(model) {}
 };
 
-Poses::Poses(const Tree& tree, const Scene& scene)
-    : inside_(std::make_unique<Inside>(tree, scene)) {}
+Poses::Poses(const Tree& tree, const Scene& scene) : impl_(std::make_unique<Impl>(tree, scene)) {}
 Poses::~Poses() = default;
 
 std::vector<Eigen::Isometry3d> Poses::operator()(double t, const double* q) {
-  auto& [tree, model, w] = *inside_;
+  auto& [tree, model, w] = *impl_;
   poses_outward(w, t, q, true);
   std::vector<Eigen::Isometry3d> all;
   for (std::size_t k = 0; k < tree.bodies.size(); ++k)
@@ -26,12 +25,12 @@ std::vector<Eigen::Isometry3d> Poses::operator()(double t, const double* q) {
 }
 
 void Poses::move(double t, const double* q, const double* u) {
-  poses_outward(inside_->w, t, q, true);
-  velocities_outward(inside_->w, u);
+  poses_outward(impl_->w, t, q, true);
+  velocities_outward(impl_->w, u);
 }
 
 BodyMotion Poses::motion(int body) const {
-  const auto& [tree, model, w] = *inside_;
+  const auto& [tree, model, w] = *impl_;
   const auto k = static_cast<std::size_t>(body);
   BodyMotion motion;
   motion.pose = pose_of(tree.bodies[k], model, w, k);

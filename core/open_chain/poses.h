@@ -35,8 +35,8 @@ class Poses {
   BodyMotion motion(int body) const;
 
  private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace momenta

@@ -1,7 +1,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <cmath>
 #include <set>

@@ -3,7 +3,7 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <set>
 #include <span>

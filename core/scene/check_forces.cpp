@@ -4,7 +4,7 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // and L or T.
 
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <vector>

@@ -1,7 +1,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <optional>
 

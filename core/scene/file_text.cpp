@@ -1,5 +1,5 @@
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <fstream>
 #include <system_error>

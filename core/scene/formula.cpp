@@ -1,7 +1,7 @@
 #include <momenta/core/expression/spline.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Why a formula is unfit for a force, an event or a loop.
 
 #include <momenta/core/scene/formula.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 

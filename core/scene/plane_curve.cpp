@@ -1,5 +1,5 @@
 #include <momenta/core/scene/plane_curve.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <numbers>
 

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/rod_ends.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

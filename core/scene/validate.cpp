@@ -6,7 +6,7 @@
 #include <momenta/core/scene/shapes.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

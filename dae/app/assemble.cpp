@@ -110,11 +110,11 @@ int assemblies(const Options& o, const AssembliesOptions& a) {
 }  // namespace
 
 Verb declare_assemble(CLI::App& app, Options& o) {
-  struct Asked {
+  struct Arguments {
     AssembliesOptions assemblies;
     bool all = false;
   };
-  const auto own = std::make_shared<Asked>();
+  const auto own = std::make_shared<Arguments>();
   CLI::App& verb =
       add_verb(app, "assemble", "A consistent start: positions, rates, accelerations, λ",
                "momenta assemble examples/andrews/scene.toml");

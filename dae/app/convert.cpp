@@ -1,7 +1,7 @@
 // The verb `convert`: writes any scene as TOML, unchanged or with other joints cut.
 
 #include <momenta/core/format/toml/write_scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/topology/cut/recut.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The verbs `run`, `index` and `work` of files of equations.
 
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/output/equation_report.h>
 #include <momenta/dae/study/environment.h>
 

@@ -69,12 +69,12 @@ int make(const std::string& family, std::optional<int> n, bool turned) {
 }  // namespace
 
 Verb declare_make(CLI::App& app, Options&) {
-  struct Asked {
+  struct Arguments {
     std::string family;
     std::optional<int> n;
     bool turned = false;
   };
-  const auto own = std::make_shared<Asked>();
+  const auto own = std::make_shared<Arguments>();
   CLI::App& verb = add_verb(app, "make", "Prints a scene of a family",
                             "momenta make stewart --n 6 > stewart.toml");
   verb.add_option("family", own->family, "Which mechanism")->required()->type_name("FAMILY");

@@ -1,6 +1,6 @@
 #include "options.h"
 
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/run/run_result.h>
 

@@ -2,7 +2,7 @@
 // Options that several verbs share, the kinds of their values, and the exit status.
 
 #include <momenta/core/format/files/read_scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/output/meshes.h>
 
 #include <CLI/CLI.hpp>

@@ -4,9 +4,9 @@
 #include <momenta/core/text/utf8.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/output/csv.h>
+#include <momenta/dae/output/mechanism_view.h>
 #include <momenta/dae/output/page.h>
 #include <momenta/dae/output/picture_data.h>
-#include <momenta/dae/output/still.h>
 #include <momenta/dae/output/table.h>
 #include <momenta/dae/run/motion.h>
 #include <momenta/dae/study/environment.h>

@@ -19,8 +19,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "checkpoint_file.h"
 #include "equation_verbs.h"
-#include "kept_run.h"
 #include "loading.h"
 #include "progress.h"
 #include "results.h"
@@ -181,7 +181,7 @@ class RunFiles {
   }
 
   const Options& o_;
-  KeptRun kept_;
+  CheckpointFile kept_;
   std::unique_ptr<TrajectoryFile> trajectory_;
   std::vector<double> last_row_;
   std::optional<PartFile> summary_;

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 // A wrong command line in one sentence.
 
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/integrator/integrators.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
+#include <momenta/dae/output/mechanism_view.h>
 #include <momenta/dae/output/page.h>
-#include <momenta/dae/output/still.h>
 
 #include <cstdio>
 

@@ -33,7 +33,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
   const double *q = y, *u = y + mechanism_.nq();
   double* udot = ydot + mechanism_.nq();
   if (!has_loops()) {
-    if (!rub(t, q, u)) return false;
+    if (!add_bearing_friction(t, q, u)) return false;
     if (!e_->open_accelerations(t, q, u, udot))
       return fail_at(t, no_inertia(mechanism_, e_->singular_joint(), t, q));
     coordinate_rates(q, u, ydot);
@@ -46,7 +46,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
     q = near_q;
     u = near_u;
   }
-  if (!rub(t, q, u)) return false;
+  if (!add_bearing_friction(t, q, u)) return false;
   const double* centre = centre_.data();
   for (int k = 0; k < solutions_; ++k) {
     if (!solver_->acceleration(t, q, u, centre, feedback_.alpha, feedback_.beta, udot,
@@ -69,7 +69,7 @@ bool AccelerationForm::after_step(double t, double* y, bool&) {
 }
 
 bool AccelerationForm::read(double t, const double* y, const double*, Snapshot& out) {
-  const Looking looking(*this);
+  const ObservationGuard looking(*this);
   std::vector<double> state(y, y + size()), rates(state.size());
   double *q = state.data(), *u = q + mechanism_.nq();
   // The correction belongs to the method, so it is applied to interpolated states too.

@@ -35,7 +35,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     Work& w = work();
     const double *q = y, *v = y + layout_.x();
     double* vdot = f + layout_.x();
-    if (!rub(t, q, v)) return false;
+    if (!add_bearing_friction(t, q, v)) return false;
     if (!w.solver) {
       if (!w.e->open_accelerations(t, q, v, vdot))
         return failed(no_inertia(mechanism_, w.e->singular_joint(), t, q));
@@ -57,7 +57,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     const double *q = y, *v = y + layout_.x();
     double* vdot = f + layout_.x();
     if (layout_.m == 0) return consistent(t, y, z, f);
-    if (!rub(t, q, v)) return false;
+    if (!add_bearing_friction(t, q, v)) return false;
     e.place(t, q);
     work.kkt.act_at(e);
     e.move(v);

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/form/form_entry.h>
 
 #include <algorithm>

@@ -51,7 +51,7 @@ bool HalfExplicitParts::failed(std::string sentence) {
   return false;
 }
 
-bool HalfExplicitParts::rub(double t, const double* q, const double* u) {
+bool HalfExplicitParts::add_bearing_friction(double t, const double* q, const double* u) {
   BearingFriction* friction = work().friction.get();
   return !friction || friction->at(t, q, u) || failed(friction->failure());
 }

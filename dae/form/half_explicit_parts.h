@@ -42,7 +42,7 @@ class HalfExplicitParts : public HalfExplicit {
   Work& work();
   bool failed(std::string sentence);
   /// Finds the friction of bearings, if any, at (t, q, u).
-  bool rub(double t, const double* q, const double* u);
+  bool add_bearing_friction(double t, const double* q, const double* u);
   /// Newton's method for Φ(q, t) = 0 by q + δ, M δ + Φ_qᵀν = 0.
   bool meet_positions(double t, double* q, const NaturalSizes& natural);
   /// Φ_q v + Φ_t = 0 by M v + Φ_qᵀν = M v_before, linear.

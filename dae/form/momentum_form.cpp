@@ -65,7 +65,7 @@ bool MomentumForm::rhs(double t, const double* y, double* ydot) {
 
 bool MomentumForm::add_friction(double t, const double* q, double* pdot) {
   if (!friction_) return true;
-  if (!rub(t, q, u_.data())) return false;
+  if (!add_bearing_friction(t, q, u_.data())) return false;
   for (std::size_t i = 0; i < u_.size(); ++i) pdot[i] += friction_->forces()[i];
   return true;
 }
@@ -130,7 +130,7 @@ void MomentumForm::carry(Memory& memory) {
 
 bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out) {
   const double* p = y + mechanism_.nq();
-  const Looking looking(*this);
+  const ObservationGuard looking(*this);
   out.q = Eigen::Map<const Eigen::VectorXd>(y, mechanism_.nq());
   const double* q = out.q.data();
   // The correction belongs to the method, so it is applied to interpolated states too.

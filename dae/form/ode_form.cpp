@@ -67,7 +67,7 @@ void OdeForm::begin_step(double, const double*) {
   handling_ = SingularityHandling::none;
 }
 
-void OdeForm::look_on(bool looking) {
+void OdeForm::set_observing(bool looking) {
   const long solutions = solver_ ? solver_->solutions() : 0;
   if (looking && looking_++ == 0) {
     before_looking_ = solutions;

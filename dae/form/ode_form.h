@@ -60,7 +60,7 @@ class OdeForm : public Form, public OdeSystem {
   LocalJacobian* local_jacobian() { return solved_.get(); }
   void begin_step(double t, const double* y) override;
   SingularityHandling wanted_handling() const override { return handling_; }
-  void look_on(bool looking) override;
+  void set_observing(bool looking) override;
   bool can_be_put_down() const override { return !solver_ || !solver_->remembers(); }
   void carry(Memory& memory) override;
 
@@ -83,7 +83,7 @@ class OdeForm : public Form, public OdeSystem {
       std::copy_n(u, mechanism_.nv(), qdot);
   }
   /// Finds the friction of bearings, if any, at (t, q, u).
-  bool rub(double t, const double* q, const double* u) {
+  bool add_bearing_friction(double t, const double* q, const double* u) {
     return !friction_ || friction_->at(t, q, u) || fail_at(t, friction_->failure());
   }
   /// Adds the friction found, by reference, to solutions of (3).
@@ -113,7 +113,7 @@ class OdeForm : public Form, public OdeSystem {
   /// Fails with the sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);
 
-  int looking_ = 0;  ///< depth of look_on()
+  int looking_ = 0;  ///< depth of set_observing()
   long looked_ = 0, before_looking_ = 0;
   std::vector<double> kept_;                                  ///< multipliers before looking
   SingularityHandling handling_ = SingularityHandling::none;  ///< handling of the step under way

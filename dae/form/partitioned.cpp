@@ -156,7 +156,7 @@ class Partitioned final : public OdeForm {
     return true;
   }
   bool read(double t, const double* y, const double*, Snapshot& out) override {
-    const Looking looking(*this);
+    const ObservationGuard looking(*this);
     if (!close(t, y, true) || !accelerate(t)) return false;
     out.q = q_;
     out.u = u_;
@@ -311,7 +311,7 @@ class Partitioned final : public OdeForm {
   }
 
   bool accelerate(double t) {
-    if (!rub(t, q_.data(), u_.data())) return false;
+    if (!add_bearing_friction(t, q_.data(), u_.data())) return false;
     if (!has_loops())
       return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
              fail_at(t, no_inertia(mechanism_, e_->singular_joint(), t, q_.data()));

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/drive.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/differentiable.h>
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/integrator/integrators.h>

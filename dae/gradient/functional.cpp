@@ -1,5 +1,5 @@
 #include <momenta/core/expression/evaluate.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/functional.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/differentiable.h>
@@ -44,7 +44,7 @@ std::unique_ptr<FormAdjoint> form_adjoint(const Mechanism& mechanism, const OdeF
 }
 
 /// Parts that forward and adjoint share.
-struct Asked {
+struct GradientTask {
   const GradientRequest& request;
   const Mechanism& mechanism;
   const Start& start;
@@ -113,7 +113,7 @@ struct Asked {
   void adjoint();
 };
 
-void Asked::forward() {
+void GradientTask::forward() {
   const RunSettings& s = result.settings;
   std::optional<Functional> functional;
   if (!request.of.empty()) functional.emplace(request.of, mechanism, result.variables, others);
@@ -151,7 +151,7 @@ void Asked::forward() {
   if (request.trajectory || !outputs.empty())
     observer.sample = [&](double t, const double* y, const double*) {
       if (!outputs.empty() && t < request.times.front()) return true;
-      const Looking looking(*system);
+      const ObservationGuard looking(*system);
       if (!system->motion(t, y, motion)) {
         lost = system->failure();
         return false;
@@ -209,7 +209,7 @@ void Asked::forward() {
   }
 }
 
-void Asked::adjoint() {
+void GradientTask::adjoint() {
   const RunSettings& s = result.settings;
   FunctionalSlopes functional(request.of, mechanism, result.variables, others);
   const std::unique_ptr<FormAdjoint> stages = form_adjoint(mechanism, form, others);
@@ -356,7 +356,7 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
       } catch (const SceneError&) {  // no neighbour: no formula differs
       }
   LawJumps jumps(mechanism, near, !form.momentum_like());
-  Asked asked{
+  GradientTask task{
       request,
       mechanism,
       start,
@@ -368,9 +368,9 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
       s.step == 0 ? input_times(mechanism.scene(), start.t, s.end_time) : std::vector<double>{},
       result};
   if (result.adjoint)
-    asked.adjoint();
+    task.adjoint();
   else
-    asked.forward();
+    task.forward();
   if (!std::isfinite(result.value) || !result.gradient.allFinite())
     throw SceneError(mechanism.scene().where({}) + reading::in_quotes(request.of) +
                      " or its gradient is not a finite number; expected a formula that has a value "

@@ -1,8 +1,8 @@
 #include <momenta/core/expression/formula_text.h>
 #include <momenta/core/expression/jumps.h>
 #include <momenta/core/scene/formula.h>
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/law_jumps.h>
 #include <momenta/dae/gradient/linear_formulas.h>
 

@@ -2,7 +2,7 @@
 #include <momenta/core/expression/simplify.h>
 #include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/scene/formula.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/linear_formulas.h>
 
 #include <algorithm>

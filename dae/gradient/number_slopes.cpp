@@ -1,5 +1,5 @@
 #include <momenta/dae/gradient/number_slopes.h>
-#include <momenta/dae/gradient/numbers_alone.h>
+#include <momenta/dae/gradient/scene_difference.h>
 
 #include <algorithm>
 #include <array>

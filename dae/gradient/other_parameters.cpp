@@ -1,6 +1,6 @@
 #include <momenta/dae/gradient/linear_formulas.h>
-#include <momenta/dae/gradient/numbers_alone.h>
 #include <momenta/dae/gradient/other_parameters.h>
+#include <momenta/dae/gradient/scene_difference.h>
 
 #include <algorithm>
 #include <optional>
@@ -40,7 +40,7 @@ VectorXd numbers_by(const NumberSlopes& slopes, const Scene& own, Neighbours& ne
 /// number that a reading refuses, or that changes more than its share, is taken alone.
 class OwnNumbers {
  public:
-  OwnNumbers(const SceneText& scene, const NumberSlopes& slopes, const NumbersAlone& same,
+  OwnNumbers(const SceneText& scene, const NumberSlopes& slopes, const SceneDifference& same,
              const Scene& own)
       : scene_(scene), slopes_(slopes), same_(same), own_(slopes.numbers(own)) {}
 
@@ -122,7 +122,7 @@ class OwnNumbers {
 
   const SceneText& scene_;
   const NumberSlopes& slopes_;
-  const NumbersAlone& same_;
+  const SceneDifference& same_;
   VectorXd own_;
 };
 
@@ -133,7 +133,7 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
                                              const TakenAtOnce& at_once) {
   std::vector<OtherParameter> all(variables.size());
   const NumberSlopes* const slopes = at_once.slopes;
-  std::optional<NumbersAlone> same, plain;
+  std::optional<SceneDifference> same, plain;
   for (std::size_t j = 0; j < variables.size(); ++j)
     all[j].h = sixth_order::part * variables[j].size;
   if (slopes) {
@@ -165,7 +165,7 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
     };
     auto near = std::make_unique<Neighbours>(v, other.h, scenes, mechanism, scene.options);
     if (slopes && other.numbers.size() == 0) {
-      const auto change = [&](const NumbersAlone& alone) {
+      const auto change = [&](const SceneDifference& alone) {
         Change largest = Change::inertias_and_forces;
         for (const Scene& made : near->scenes()) largest = std::max(largest, alone.of(made));
         return largest;

@@ -8,8 +8,8 @@
 // c_i h. Where none are, trials of singular poses lie between.
 
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/gradient/kept_numbers.h>
 #include <momenta/dae/gradient/singular_passages.h>
+#include <momenta/dae/gradient/step_arena.h>
 
 #include <functional>
 #include <string>
@@ -83,9 +83,9 @@ class RecordedRun final : public OdeSystem {
                               double atol) override {
     return system_.motion_error_squared(t, y, error, rtol, atol);
   }
-  void look_on(bool looking) override {
+  void set_observing(bool looking) override {
     looking_ += looking ? 1 : -1;
-    system_.look_on(looking);
+    system_.set_observing(looking);
   }
   double scale(int i) const override { return system_.scale(i); }
   double time_scale() const override { return system_.time_scale(); }
@@ -131,7 +131,7 @@ class RecordedRun final : public OdeSystem {
     double* rates;
   };
   std::vector<Kept> kept_;
-  KeptNumbers numbers_;
+  StepArena numbers_;
   std::size_t count_ = 0;  ///< numbers kept
 };
 

@@ -1,5 +1,5 @@
 #include <momenta/core/format/toml/number_at.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/kkt/loop_units.h>
 

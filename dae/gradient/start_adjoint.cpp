@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/drive_slopes.h>
 #include <momenta/dae/gradient/stage_matrix.h>
 #include <momenta/dae/gradient/start_adjoint.h>

@@ -58,9 +58,9 @@ class TangentSystem final : public OdeSystem {
   void set_handling(SingularityHandling handling) override;
   double motion_error_squared(double t, const double* y, const double* error, double rtol,
                               double atol) override;
-  void look_on(bool looking) override {
+  void set_observing(bool looking) override {
     looking_ += looking ? 1 : -1;
-    form_.look_on(looking);
+    form_.set_observing(looking);
   }
   double scale(int i) const override;
   double time_scale() const override { return form_.time_scale(); }

@@ -177,7 +177,7 @@ class ExplicitRun {
 
   /// Shows the step, then the output times inside it.
   bool observe(double t1) {
-    const Looking looking(system_);
+    const ObservationGuard looking(system_);
     if (observer_.step) {
       const bool go_on = observer_.step(t_, t1, between_);
       if (step_.interpolation_failed()) return stop_at_interpolation(t1);
@@ -200,7 +200,7 @@ class ExplicitRun {
   /// |λ| at the step's end, about to be corrected: a gauge takes that farther from the last stage
   /// than their motions are. f there serves this alone and is not counted.
   double rate_of_change_at_end(double t1) {
-    const Looking looking(system_);
+    const ObservationGuard looking(system_);
     if (!system_.rhs(t1, step_.y_new(), end_rate_.data())) return 0;
     return step_.rate_of_change(step_.y_new(), end_rate_.data());
   }
@@ -214,7 +214,7 @@ class ExplicitRun {
 
   /// Samples output times at or before t, from the state at the step's end.
   bool sample_until(double t) {
-    const Looking looking(system_);
+    const ObservationGuard looking(system_);
     for (; outputs_.due(t); outputs_.advance())
       if (observer_.sample && !observer_.sample(outputs_.time(), step_.y(), nullptr)) {
         outputs_.advance();

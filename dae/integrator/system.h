@@ -57,9 +57,9 @@ class OdeSystem {
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Evaluations between look_on(true) and look_on(false) are for an observer: they are not
-  /// counted, and no later step depends on them. Pairs may be nested.
-  virtual void look_on(bool /*looking*/) {}
+  /// Evaluations between set_observing(true) and set_observing(false) are for an observer: they are
+  /// not counted, and no later step depends on them. Pairs may be nested.
+  virtual void set_observing(bool /*looking*/) {}
 
   /// Whether carry() lists everything on which later evaluations depend, so that a run can be saved
   /// and continued.
@@ -97,14 +97,14 @@ class OdeSystem {
   std::string failure_;
 };
 
-/// While this object lives, evaluations of the system are for an observer: look_on().
-class Looking {
+/// While this object lives, evaluations of the system are for an observer: set_observing().
+class ObservationGuard {
  public:
-  /// Calls look_on(true).
-  explicit Looking(OdeSystem& system) : system_(system) { system_.look_on(true); }
-  ~Looking() { system_.look_on(false); }
-  Looking(const Looking&) = delete;
-  Looking& operator=(const Looking&) = delete;
+  /// Calls set_observing(true).
+  explicit ObservationGuard(OdeSystem& system) : system_(system) { system_.set_observing(true); }
+  ~ObservationGuard() { system_.set_observing(false); }
+  ObservationGuard(const ObservationGuard&) = delete;
+  ObservationGuard& operator=(const ObservationGuard&) = delete;
 
  private:
   OdeSystem& system_;

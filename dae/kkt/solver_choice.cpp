@@ -2,7 +2,7 @@
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_joint.h>
 #include <momenta/dae/kkt/factor/faded_pivot.h>
-#include <momenta/dae/kkt/leaves_first.h>
+#include <momenta/dae/kkt/saddle_point_factor.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/kkt/sweeps/branches/looped_branches.h>
 #include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
@@ -140,7 +140,7 @@ std::string SolverChoice::joint_without_inertia() const {
   const auto size = static_cast<std::size_t>(tree.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(static_cast<std::size_t>(mechanism_.m()));
   if (!reason_.empty()) {
-    const auto matrix = leaves_first_matrix(mechanism_);
+    const auto matrix = saddle_point_factor(mechanism_);
     const auto e = mechanism_.evaluation<double>();
     e->place(0, tree.q0.data());
     const bool factorised = matrix->factor(*e, 0, tree.q0.data(), nullptr, fade_evaluation);
@@ -169,44 +169,43 @@ std::string SolverChoice::loops_missed() const {
   double error = 0;
   if (reason_.empty()) {
     const auto sweeps = this->sweeps();
-    error = leaves_first_error(mechanism_, *e,
-                               [&](const double* q, const double* p, double beta, double fade,
-                                   double* v, double* sigma) -> std::optional<bool> {
-                                 RightSide<double> right;
-                                 right.fade = fade_beside(fade, mechanism_.masses_apart());
-                                 right.drives = false;
-                                 right.positions = beta;
-                                 const bool ok =
-                                     sweeps->momentum(0, q, p, right, v, sigma, nullptr);
-                                 if (sweeps->weak_looped_branch()) return std::nullopt;
-                                 return ok;
-                               });
+    error = elimination_error(mechanism_, *e,
+                              [&](const double* q, const double* p, double beta, double fade,
+                                  double* v, double* sigma) -> std::optional<bool> {
+                                RightSide<double> right;
+                                right.fade = fade_beside(fade, mechanism_.masses_apart());
+                                right.drives = false;
+                                right.positions = beta;
+                                const bool ok = sweeps->momentum(0, q, p, right, v, sigma, nullptr);
+                                if (sweeps->weak_looped_branch()) return std::nullopt;
+                                return ok;
+                              });
   } else {
-    const auto matrix = leaves_first_matrix(mechanism_);
+    const auto matrix = saddle_point_factor(mechanism_);
     const auto own = mechanism_.evaluation<double>();
     std::vector<double> x(static_cast<std::size_t>(mechanism_.nv() + mechanism_.m()));
     std::vector<double> place;  // q and fade of the factors at hand
-    error = leaves_first_error(mechanism_, *e,
-                               [&](const double* q, const double* p, double beta, double fade,
-                                   double* v, double* sigma) -> std::optional<bool> {
-                                 std::vector<double> here(q, q + mechanism_.nq());
-                                 here.push_back(fade);
-                                 if (here != place) {
-                                   place.clear();
-                                   own->place(0, q);
-                                   if (!matrix->factor(*own, 0, q, nullptr, fade)) return false;
-                                   place = here;
-                                 }
-                                 own->positions(x.data() + mechanism_.nv());
-                                 std::copy_n(p, mechanism_.nv(), x.data());
-                                 for (int i = mechanism_.nv(); i < mechanism_.nv() + mechanism_.m();
-                                      ++i)
-                                   x[static_cast<std::size_t>(i)] *= -beta;
-                                 matrix->solve(x.data());
-                                 std::copy_n(x.data(), mechanism_.nv(), v);
-                                 std::copy_n(x.data() + mechanism_.nv(), mechanism_.m(), sigma);
-                                 return true;
-                               });
+    error =
+        elimination_error(mechanism_, *e,
+                          [&](const double* q, const double* p, double beta, double fade, double* v,
+                              double* sigma) -> std::optional<bool> {
+                            std::vector<double> here(q, q + mechanism_.nq());
+                            here.push_back(fade);
+                            if (here != place) {
+                              place.clear();
+                              own->place(0, q);
+                              if (!matrix->factor(*own, 0, q, nullptr, fade)) return false;
+                              place = here;
+                            }
+                            own->positions(x.data() + mechanism_.nv());
+                            std::copy_n(p, mechanism_.nv(), x.data());
+                            for (int i = mechanism_.nv(); i < mechanism_.nv() + mechanism_.m(); ++i)
+                              x[static_cast<std::size_t>(i)] *= -beta;
+                            matrix->solve(x.data());
+                            std::copy_n(x.data(), mechanism_.nv(), v);
+                            std::copy_n(x.data() + mechanism_.nv(), mechanism_.m(), sigma);
+                            return true;
+                          });
   }
   if (error <= most_leaves_first_error) return "";
   char missed[160];

@@ -2,7 +2,7 @@
 // How (7) is solved for a mechanism with loops: by sweeps that carry them, or by an assembled
 // matrix where the sweeps do not. A joint may have no inertia until a loop closes above it, and
 // next to masses far apart eliminating joints before loops loses digits: so solutions at the start
-// and near it are tried, and their error measured (leaves_first.h).
+// and near it are tried, and their error measured (saddle_point_factor.h).
 
 #include <momenta/dae/kkt/sweeps/levels/looped_sweeps.h>
 #include <momenta/dae/mechanism/mechanism.h>

@@ -2,7 +2,7 @@
 // the sweeps, on a pattern analysed once.
 
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/kkt/leaves_first.h>
+#include <momenta/dae/kkt/saddle_point_factor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 class SparseKkt final : public Kkt {
  public:
-  SparseKkt(const Mechanism& mechanism, std::unique_ptr<LeavesFirstMatrix> matrix)
+  SparseKkt(const Mechanism& mechanism, std::unique_ptr<SaddlePointFactor> matrix)
       : pattern_(mechanism.constraint_pattern()),
         matrix_(std::move(matrix)),
         n_(static_cast<std::size_t>(mechanism.nv())),
@@ -58,7 +58,7 @@ class SparseKkt final : public Kkt {
 
  private:
   const std::vector<KktPattern::Entry>& pattern_;  ///< pattern of Φ_q
-  std::unique_ptr<LeavesFirstMatrix> matrix_;
+  std::unique_ptr<SaddlePointFactor> matrix_;
   std::size_t n_, m_;
   std::vector<double> x_;
 };

@@ -1,5 +1,5 @@
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/output/csv.h>
 #include <momenta/dae/output/json.h>
 #include <momenta/dae/output/least_report.h>
@@ -17,7 +17,7 @@ std::string least_in_words(const LeastResult& r) {
                                    : "the scene as it is has none: " + r.why_not_before + ".";
   text += starts_in_words(r);
   std::vector<std::string> at_limit;
-  for (const KeptCondition& c : r.keep)
+  for (const UserConstraint& c : r.keep)
     if (!c.equal && c.multiplier > 0) at_limit.push_back(c.text);
   if (!at_limit.empty()) text += " Held by " + reading::all_in_quotes(at_limit) + ".";
   text += at_ends_in_words(r.parameters, r.found);

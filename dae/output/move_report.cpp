@@ -1,5 +1,5 @@
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/output/csv.h>
 #include <momenta/dae/output/json.h>
 #include <momenta/dae/output/move_report.h>

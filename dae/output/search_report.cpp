@@ -1,5 +1,5 @@
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/output/csv.h>
 #include <momenta/dae/output/json.h>
 #include <momenta/dae/output/search_report.h>
@@ -88,9 +88,9 @@ Json values_json(const std::vector<FittedParameter>& parameters, const Eigen::Ve
   return all;
 }
 
-Json kept_json(const std::vector<KeptCondition>& keep) {
+Json kept_json(const std::vector<UserConstraint>& keep) {
   Json all = Json::array();
-  for (const KeptCondition& c : keep)
+  for (const UserConstraint& c : keep)
     all.push_back({{"condition", c.text},
                    {"before", number_or_null(c.before)},
                    {"after", number_or_null(c.after)},
@@ -98,10 +98,10 @@ Json kept_json(const std::vector<KeptCondition>& keep) {
   return all;
 }
 
-std::string kept_table(const std::vector<KeptCondition>& keep) {
+std::string kept_table(const std::vector<UserConstraint>& keep) {
   if (keep.empty()) return "";
   std::vector<std::vector<std::string>> rows{{"condition", "room before", "after", "multiplier"}};
-  for (const KeptCondition& c : keep)
+  for (const UserConstraint& c : keep)
     rows.push_back({c.text, compact(c.before, 3),
                     std::abs(c.after) < 1e-9 ? "0" : compact(c.after, 3),
                     c.multiplier == 0 ? "0" : compact(c.multiplier, 3)});

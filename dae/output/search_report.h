@@ -51,9 +51,9 @@ nlohmann::ordered_json values_json(const std::vector<FittedParameter>& parameter
                                    const Eigen::VectorXd& values);
 
 /// Conditions as in fit.json: [{condition, before, after, multiplier}].
-nlohmann::ordered_json kept_json(const std::vector<KeptCondition>& keep);
+nlohmann::ordered_json kept_json(const std::vector<UserConstraint>& keep);
 /// Empty without conditions.
-std::string kept_table(const std::vector<KeptCondition>& keep);
+std::string kept_table(const std::vector<UserConstraint>& keep);
 
 struct SweptCurve {
   const char* name;

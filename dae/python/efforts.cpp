@@ -1,6 +1,6 @@
 // Efforts along a given motion.
 
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/effort/effort.h>
 
 #include <optional>

@@ -1,7 +1,7 @@
 #include "bindings.h"
 
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/study/environment.h>
 
 // The compiled part of the package momenta; the package decides what is public.

@@ -7,10 +7,10 @@
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/output/index_report.h>
+#include <momenta/dae/output/mechanism_view.h>
 #include <momenta/dae/output/page.h>
 #include <momenta/dae/output/part_file.h>
 #include <momenta/dae/output/state_report.h>
-#include <momenta/dae/output/still.h>
 #include <momenta/dae/output/sweep_report.h>
 #include <momenta/dae/run/state_input.h>
 #include <momenta/dae/study/environment.h>

@@ -1,5 +1,5 @@
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/mechanism/loop/pair_of_loop.h>
 #include <momenta/dae/run/passed_limits.h>
 

@@ -3,17 +3,17 @@
 // (run_monitor.cpp) and between the steps (run_monitor_steps.cpp), and finds events: those of the
 // scene as written, whatever joints the run cuts. Only run_form.cpp uses it.
 
-#include <momenta/dae/run/apart.h>
 #include <momenta/dae/run/departures.h>
 #include <momenta/dae/run/event_watch.h>
 #include <momenta/dae/run/integrated_work.h>
+#include <momenta/dae/run/loop_closure_monitor.h>
 #include <momenta/dae/run/measure/drive_power.h>
 #include <momenta/dae/run/passed_limits.h>
 #include <momenta/dae/run/run_form.h>
 #include <momenta/dae/run/sample_errors.h>
 #include <momenta/dae/run/singular_crossings.h>
 #include <momenta/dae/topology/cut/integrated_scene.h>
-#include <momenta/dae/topology/cut/written_motion.h>
+#include <momenta/dae/topology/cut/original_scene_motion.h>
 
 #include <memory>
 #include <optional>
@@ -128,7 +128,7 @@ class RunMonitor {
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
-  std::optional<WrittenMotion> written_;  ///< if the run integrates another scene
+  std::optional<OriginalSceneMotion> written_;  ///< if the run integrates another scene
   std::unique_ptr<Evaluation<double>> integrated_e_;
   std::unique_ptr<LoopSolver> integrated_solver_;
   RigidStops* stops_;
@@ -156,7 +156,7 @@ class RunMonitor {
   std::string ended_by_;
   double ended_at_ = 0;
   std::optional<SingularCrossings> singular_crossings_;
-  std::optional<Apart> apart_;
+  std::optional<LoopClosureMonitor> apart_;
   Departures departures_;
   std::string came_apart_;
   Closed closed_;

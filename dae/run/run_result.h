@@ -111,7 +111,8 @@ struct RunResult {
   std::string scene;     ///< name
   RunSettings settings;  ///< as given, with defaults filled in
   /// done; event: one of the scene's ended it; failed; time limit; came apart: loops opened too far
-  /// (apart.h), or the balance of energy or the rates of loops were lost (departures.h)
+  /// (loop_closure_monitor.h), or the balance of energy or the rates of loops were lost
+  /// (departures.h)
   std::string status = "done";
   std::string reason;  ///< one sentence when not done
   /// One sentence on how far the balance of energy or the rates of loops are off, if that makes a

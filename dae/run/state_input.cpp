@@ -1,6 +1,6 @@
 #include <momenta/core/scene/validate.h>
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/mechanism/joint_places.h>
 #include <momenta/dae/mechanism/mechanism.h>
 #include <momenta/dae/run/state_input.h>

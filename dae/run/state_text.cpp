@@ -1,5 +1,5 @@
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/run/state_text.h>
 
 #include <algorithm>

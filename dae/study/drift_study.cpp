@@ -1,4 +1,4 @@
-#include <momenta/core/open_chain/share.h>
+#include <momenta/core/open_chain/parallel_for.h>
 #include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_record.h>
@@ -99,7 +99,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     return going.load();
   };
   // Runs are watched side by side, and timed afterwards, one at a time.
-  share(request.threads, runs.size(), [&](std::size_t i) {
+  parallel_for(request.threads, runs.size(), [&](std::size_t i) {
     if (!going) return;
     const std::string key = key_of(runs[i]);
     auto result = recall<RunResult>(request.journal, key);

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/scene_suite.h>
 #include <momenta/dae/topology/assembly/assembly.h>

@@ -2,7 +2,7 @@
 
 #include <momenta/core/format/toml/fields.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/study/scene_suite.h>

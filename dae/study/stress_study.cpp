@@ -1,4 +1,4 @@
-#include <momenta/core/open_chain/share.h>
+#include <momenta/core/open_chain/parallel_for.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/dae/integrator/integrators.h>
 #include <momenta/dae/integrator/stopping.h>
@@ -253,7 +253,7 @@ StressResult run_stress_study(const StressRequest& request) {
   }
   total = static_cast<int>(places.size() * (1 + contestants));
 
-  share(request.threads, places.size(), [&](std::size_t i) {
+  parallel_for(request.threads, places.size(), [&](std::size_t i) {
     const auto [l, k] = places[i];
     const Rung& rung = request.ladders[l].rungs[k];
     const std::string name = request.ladders[l].name + " " + rung.label;
@@ -263,7 +263,7 @@ StressResult run_stress_study(const StressRequest& request) {
     result.ladders[l].reference[k] = g.accuracy;
   });
 
-  share(request.threads, result.ladders.size() * contestants, [&](std::size_t i) {
+  parallel_for(request.threads, result.ladders.size() * contestants, [&](std::size_t i) {
     const std::size_t l = i / contestants, c = i % contestants;
     const Contestant& contestant = result.contestants[c];
     std::vector<StressRun>& climb = result.ladders[l].runs[c];

@@ -16,7 +16,7 @@
 namespace {
 
 using namespace momenta;
-using by_hand::Written;
+using by_hand::Traced;
 
 constexpr int points = 64;
 
@@ -42,7 +42,7 @@ void keep(const double* x) {
 
 int main() {
   const std::vector<by_hand::Typed> typed = by_hand::all();
-  const auto written = Written<double, by_hand::InDoubles>::all();
+  const auto written = Traced<double, by_hand::InDoubles>::all();
   const auto gradients = by_hand::gradients();
   std::printf(
       "| formula | instructions | tape [ns] | C++ [ns] | ratio | with slopes, tape | C++ | ratio | "

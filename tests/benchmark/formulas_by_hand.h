@@ -56,7 +56,7 @@ S square(const S& x) {
 /// What the formulas take beside + − * /, of one scalar: `F` has sin, cos, atan, exp, tanh, sqrt,
 /// power, and chosen(a < 0, b, c).
 template <class S, class F>
-struct Written {
+struct Traced {
   using Function = S (*)(const S*);
   static S motor(const S* x) { return S(12.5) * (S(1) - x[0] / S(300)) - S(0.02) * x[0]; }
   static S duffing(const S* x) {

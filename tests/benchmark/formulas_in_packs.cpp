@@ -43,7 +43,7 @@ struct PackFunctions {
 }  // namespace
 
 struct InPacks::Inside {
-  Written<P, PackFunctions>::Function hand;
+  Traced<P, PackFunctions>::Function hand;
   const formula::Steps* steps;
   std::size_t variables;
   std::vector<P> x, line, values;
@@ -52,7 +52,7 @@ struct InPacks::Inside {
 InPacks::InPacks(std::size_t k, const Expression& formula, const std::vector<double>& x)
     : inside_(std::make_unique<Inside>()) {
   Inside& in = *inside_;
-  in.hand = Written<P, PackFunctions>::all()[k];
+  in.hand = Traced<P, PackFunctions>::all()[k];
   in.steps = &formula.steps();
   in.variables = all()[k].variables.size();
   in.line.resize(formula.tape().size());

@@ -21,7 +21,7 @@ Start start_of_scene(const Mechanism& mechanism) {
 }
 
 /// Turns joints to point away from the ground; false where one cannot be.
-bool point_away(Scene& scene, const Sayings& said, const BodyMotions& bodies) {
+bool point_away(Scene& scene, const RecutRestrictions& said, const BodyMotions& bodies) {
   std::set<std::string> reached{"ground"};
   std::vector<JointSpec> rest = scene.joints;
   while (!rest.empty()) {
@@ -110,7 +110,7 @@ Scene at_start(const Scene& scene) {
 void cut_elsewhere(RandomTree& random, Scene& scene) {
   const Mechanism mechanism(scene);
   const Start start = start_of_scene(mechanism);
-  const Sayings said(scene, {});
+  const RecutRestrictions said(scene, {});
   const BodyMotions bodies(mechanism, start);
   const double length = length_of(scene);
   struct Edge {
@@ -154,7 +154,7 @@ void cut_elsewhere(RandomTree& random, Scene& scene) {
 
 void root_elsewhere(RandomTree& random, Scene& scene) {
   const Mechanism mechanism(scene);
-  const Sayings said(scene, {});
+  const RecutRestrictions said(scene, {});
   const BodyMotions bodies(mechanism, start_of_scene(mechanism));
   for (std::size_t i = 0; i < scene.joints.size(); ++i) {
     const JointSpec& flying = scene.joints[i];

@@ -9,7 +9,7 @@
 
 namespace momenta::equations {
 
-JointSpec reversed(const JointSpec& j) {
+JointSpec other_way_round(const JointSpec& j) {
   JointSpec r = j;
   std::swap(r.parent, r.child);
   std::swap(r.origin_parent, r.origin_child);
@@ -59,7 +59,7 @@ Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q, cons
       return reached.contains(j.parent) || reached.contains(j.child);
     });
     if (next == edges.end()) break;
-    JointSpec j = reached.contains(next->parent) ? *next : reversed(*next);
+    JointSpec j = reached.contains(next->parent) ? *next : other_way_round(*next);
     edges.erase(next);
     const Eigen::AngleAxisd turn((axes[j.parent] * j.rotation).conjugate() * axes[j.child]);
     j.position = {turn.angle() * (turn.axis().dot(j.axis) < 0 ? -1 : 1)};

@@ -9,7 +9,7 @@
 namespace momenta::equations {
 
 /// The hinge seen from its child: same angle, axis reversed.
-JointSpec reversed(const JointSpec& j);
+JointSpec other_way_round(const JointSpec& j);
 
 /// The scene of hinges with loop `closed` made a joint and joint `cut` made a loop, driven as it
 /// was, at the poses of `q`.

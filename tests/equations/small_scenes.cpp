@@ -169,7 +169,7 @@ std::string outline(const Scene& scene) {
   return text + std::to_string(scene.forces.size()) + " forces\n";
 }
 
-Tried try_scene(const Scene& scene, const std::string& form) {
+Tried try_scene(const Scene& scene, const std::string& form, double seconds) {
   RunResult run;
   int m = 0;
   try {
@@ -182,7 +182,7 @@ Tried try_scene(const Scene& scene, const std::string& form) {
     if (m > 0 && rank_report(mechanism, assembly.start).rank > m) return {"rank above m"};
     plan_lines(mechanism);
     RunRequest request = kept(adaptive(form, "", "leak", 1e-5, 0.1, 5));
-    request.max_cpu_seconds = 0.1;
+    request.max_cpu_seconds = seconds;
     run = run_form(mechanism, assembly.start, request);
   } catch (const SceneError& error) {
     return {wrong_as_a_sentence(error.what(), "refused")};
@@ -195,7 +195,7 @@ Tried try_scene(const Scene& scene, const std::string& form) {
         !std::isfinite(s.velocity_drift[i]))
       return {"a sample that is not finite, status " + run.status};
   if (run.status != "done") return {wrong_as_a_sentence(run.reason, run.status)};
-  if (s.t.empty() || std::abs(s.t.back() - 0.1) > 1e-12) return {"done, but not at the end"};
+  if (s.t.empty() || std::abs(s.t.back() - seconds) > 1e-12) return {"done, but not at the end"};
   if (m > 0 && !std::isfinite(run.position_drift_max)) return {"done without a drift"};
   return {"", true};
 }

@@ -28,8 +28,8 @@ struct Tried {
   std::string wrong;  ///< empty: all as it should be
   bool ran = false;   ///< to the end
 };
-/// Checks, assembles and runs a scene for 0.1 s in one form: each of these has to give finite
-/// results or one sentence.
-Tried try_scene(const Scene& scene, const std::string& form);
+/// Checks, assembles and runs a scene for so many seconds, and at most so many of a processor, in
+/// one form: each of these has to give finite results or one sentence.
+Tried try_scene(const Scene& scene, const std::string& form, double seconds = 0.1);
 
 }  // namespace momenta::equations

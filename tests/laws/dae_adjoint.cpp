@@ -762,7 +762,7 @@ rest = 0.3
 }
 
 TEST(Adjoint, KeepsNumbersWhereTheyAre) {
-  KeptNumbers kept;
+  StepArena kept;
   std::vector<std::pair<double*, std::size_t>> rows;
   const std::size_t counts[] = {3, 1000, 1, 70000, 8192, 300000, 5};
   for (std::size_t i = 0; i < 30; ++i) {

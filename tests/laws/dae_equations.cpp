@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/format/files/read_scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/equations/equation_run.h>
 #include <momenta/dae/analysis/equations/quad_reference.h>
 #include <momenta/dae/study/index_study.h>

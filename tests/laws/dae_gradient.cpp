@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/run/run_form.h>
 
 #include <cmath>

@@ -14,7 +14,7 @@
 #include <momenta/dae/topology/assembly/assembly.h>
 #include <momenta/dae/topology/cut/integrated_scene.h>
 #include <momenta/dae/topology/cut/interchange.h>
-#include <momenta/dae/topology/cut/written_motion.h>
+#include <momenta/dae/topology/cut/original_scene_motion.h>
 
 #include <cmath>
 #include <numbers>
@@ -117,7 +117,7 @@ Scene shuffled(Scene scene, unsigned seed) {
     std::swap(scene.joints[i],
               scene.joints[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
   for (LoopSpec& loop : scene.loops)
-    if (random.chance(0.5)) loop = turned_round(loop);
+    if (random.chance(0.5)) loop = reversed(loop);
   return scene;
 }
 
@@ -245,7 +245,7 @@ TEST(IntegratedScene, AnglesOfCutJointsCountTurns) {
   const Mechanism swept(other), written(spinning);
   const Start start = assemble(written).start;
   const Assembly a = assemble(swept);
-  WrittenMotion motion(written, start, {written.scene(), {}, {}}, swept);
+  OriginalSceneMotion motion(written, start, {written.scene(), {}, {}}, swept);
   RunRequest request;
   request.settings = default_settings({}, "projected", "", 1e-10);
   request.settings.end_time = 10;
@@ -279,7 +279,7 @@ TEST(IntegratedScene, TheStartIsTheSceneS) {
     const Start start = assemble(written).start;
     const IntegratedScene integrated(written, start);
     if (!integrated.anew()) continue;
-    WrittenMotion motion(written, start, integrated.folded(), integrated.mechanism());
+    OriginalSceneMotion motion(written, start, integrated.folded(), integrated.mechanism());
     VectorXd q, u;
     motion.read(start.t, integrated.start().q, integrated.start().u, q, u);
     EXPECT_LT((q - start.q).lpNorm<Eigen::Infinity>(), 1e-9) << scene.name;

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/factor/faded_pivot.h>
-#include <momenta/dae/kkt/leaves_first.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/saddle_point_factor.h>
 #include <momenta/dae/kkt/solver_choice.h>
 
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/linear/linear_model.h>
 #include <momenta/dae/analysis/linear/loop_drives.h>
 #include <momenta/dae/run/state_after.h>

@@ -198,7 +198,7 @@ TEST(Recut, JointsTurnedRoundHoldTheSamePose) {
     // turned round: the same place of both bodies
     joint.position = own.q, joint.velocity = own.u;
     Scene other = scene;
-    other.joints[1] = turned_round(joint);
+    other.joints[1] = reversed(joint);
     JointSpec& turned = other.joints[1];
     if (!keeps_coordinates(kind)) {
       const JointMotion m = joint_motion(turned, bodies[turned.parent], bodies[turned.child]);

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/format/files/read_scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include <momenta/dae/output/csv.h>
 #include <momenta/dae/output/json.h>
 #include <momenta/dae/output/table.h>
-#include <momenta/dae/run/apart.h>
+#include <momenta/dae/run/loop_closure_monitor.h>
 #include <momenta/dae/run/run_form.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/topology/assembly/assembly.h>
@@ -182,7 +182,7 @@ TEST(DriftUnits, WhatComesApartHasItsUnit) {
   const Mechanism mechanism(example("bricard"));
   RunSettings settings;
   settings.integrator = "dop853";
-  Apart apart(mechanism, settings);
+  LoopClosureMonitor apart(mechanism, settings);
   Eigen::VectorXd phi = Eigen::VectorXd::Zero(mechanism.m());
   for (int i = 0; i < mechanism.m(); ++i) {
     phi.setZero();

@@ -4,9 +4,9 @@
 #include "equations/scene_folder.h"
 
 #include <momenta/dae/output/figure.h>
+#include <momenta/dae/output/mechanism_view.h>
 #include <momenta/dae/output/meshes.h>
 #include <momenta/dae/output/picture_data.h>
-#include <momenta/dae/output/still.h>
 #include <momenta/dae/run/motion.h>
 #include <momenta/dae/topology/assembly/assembly.h>
 

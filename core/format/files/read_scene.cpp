@@ -3,7 +3,7 @@
 #include <momenta/core/format/sdf/sdf.h>
 #include <momenta/core/format/urdf/urdf.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

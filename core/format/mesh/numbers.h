@@ -2,7 +2,7 @@
 // Numbers in the bytes and words of mesh files.
 
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <Eigen/Core>
 #include <charconv>

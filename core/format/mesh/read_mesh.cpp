@@ -3,7 +3,7 @@
 #include <momenta/core/format/mesh/mesh.h>
 #include <momenta/core/format/mesh/numbers.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <bit>

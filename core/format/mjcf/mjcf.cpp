@@ -6,7 +6,7 @@
 #include <momenta/core/format/mjcf/mjcf_visuals.h>
 #include <momenta/core/format/xml/known_elements.h>
 #include <momenta/core/scene/validate.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <array>
 #include <map>

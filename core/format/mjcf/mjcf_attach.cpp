@@ -2,7 +2,7 @@
 #include <momenta/core/format/mjcf/mjcf_defaults.h>
 #include <momenta/core/format/mjcf/mjcf_names.h>
 #include <momenta/core/format/xml/file_inside.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <momenta/core/format/mjcf/mjcf_parts.h>
 #include <momenta/core/format/mjcf/mjcf_visuals.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

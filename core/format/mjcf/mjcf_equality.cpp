@@ -2,7 +2,7 @@
 // between two sites is a distance: L = L(qpos0) + c0.
 
 #include <momenta/core/format/mjcf/mjcf_model.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include <momenta/core/format/mjcf/mjcf_inertia.h>
 #include <momenta/core/format/mjcf/mjcf_model.h>
 #include <momenta/core/format/xml/made_scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <Eigen/Eigenvalues>
 #include <array>

@@ -1,7 +1,7 @@
 #include <momenta/core/format/mjcf/mjcf_files.h>
 #include <momenta/core/format/mjcf/mjcf_meshes.h>
 #include <momenta/core/format/xml/file_inside.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <momenta/core/format/mjcf/mjcf_copies.h>
 #include <momenta/core/format/mjcf/mjcf_names.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

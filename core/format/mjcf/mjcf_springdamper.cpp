@@ -12,7 +12,7 @@
 
 #include <momenta/core/format/mjcf/mjcf_model.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <Eigen/Cholesky>
 

@@ -5,7 +5,7 @@
 #include <momenta/core/format/sdf/sdf_model.h>
 #include <momenta/core/format/xml/known_elements.h>
 #include <momenta/core/scene/validate.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 namespace momenta::reading {
 namespace {

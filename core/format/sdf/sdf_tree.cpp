@@ -11,7 +11,7 @@
 
 #include <momenta/core/format/sdf/sdf_model.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <numeric>

@@ -4,7 +4,7 @@
 #include <momenta/core/format/toml/scene_keys.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // [lagrangian]: a system of coordinates and formulas, without bodies.
 
 #include <momenta/core/format/toml/scene_keys.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 namespace momenta::reading {
 namespace {

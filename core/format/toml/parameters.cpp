@@ -1,7 +1,7 @@
 #include <momenta/core/format/toml/fields.h>
 #include <momenta/core/format/toml/parameters.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <momenta/core/format/toml/scene_keys.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <charconv>

@@ -2,7 +2,7 @@
 #include <momenta/core/format/toml/number_at.h>
 #include <momenta/core/format/toml/parameters.h>
 #include <momenta/core/format/toml/set_numbers.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <charconv>

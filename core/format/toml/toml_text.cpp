@@ -1,5 +1,5 @@
 #include <momenta/core/format/toml/toml_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include <momenta/core/format/toml/toml_values.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <stdexcept>

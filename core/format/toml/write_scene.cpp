@@ -1,7 +1,7 @@
 #include <momenta/core/format/toml/scene_keys.h>
 #include <momenta/core/format/toml/write_scene.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 namespace momenta {
 namespace {

@@ -13,7 +13,7 @@
 #include <momenta/core/format/urdf/urdf.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>

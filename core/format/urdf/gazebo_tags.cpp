@@ -12,7 +12,7 @@
 #include <momenta/core/format/sdf/sdf_frames.h>
 #include <momenta/core/format/urdf/urdf.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

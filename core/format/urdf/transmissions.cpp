@@ -7,7 +7,7 @@
 // <drake:rotor_inertia> and <drake:gear_ratio>. Default: n = 1.
 
 #include <momenta/core/format/urdf/urdf.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <momenta/core/format/xml/file_inside.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <array>

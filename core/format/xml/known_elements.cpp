@@ -1,6 +1,6 @@
 #include <momenta/core/format/xml/known_elements.h>
 #include <momenta/core/text/edits.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 #include <momenta/core/format/xml/made_scene.h>
 #include <momenta/core/scene/shapes.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 

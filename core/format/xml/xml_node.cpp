@@ -1,7 +1,7 @@
 #include <momenta/core/format/xml/xml_node.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/core/text/utf8.h>
 
 #include <tinyxml2.h>

@@ -5,8 +5,8 @@
 #include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/joint_forces.h>
+#include <momenta/core/kernel/levels/lazy.h>
 #include <momenta/core/kernel/levels/strided.h>
-#include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
 #include <momenta/core/kernel/planar_acceleration_sweeps.h>
 #include <momenta/core/kernel/planar_momentum_sweeps.h>
@@ -219,9 +219,9 @@ class BatchSweepsAt final : public BatchSweeps {
   };
 
   const Tree& tree_;
-  WhenAsked<MomentumSweeps<Space, Many>> momenta_;
-  WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
-  WhenAsked<JacobianPass<Space, Many>> jacobian_;
+  Lazy<MomentumSweeps<Space, Many>> momenta_;
+  Lazy<AccelerationSweeps<Space, Many>> accelerations_;
+  Lazy<JacobianPass<Space, Many>> jacobian_;
   Buffer rates_, padded_, forces_, block_;
   int singular_joint_ = -1,
       joint_ = -1;  ///< singular_joint_: of the first state that failed; joint_: of the last one

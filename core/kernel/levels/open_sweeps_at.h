@@ -9,9 +9,9 @@
 #include <momenta/core/kernel/composite_sweeps.h>
 #include <momenta/core/kernel/inverse_dynamics_sweeps.h>
 #include <momenta/core/kernel/jacobian_pass.h>
+#include <momenta/core/kernel/levels/lazy.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/strided.h>
-#include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/planar_acceleration_sweeps.h>
 
 namespace momenta {
@@ -138,10 +138,10 @@ class OpenSweepsAt final : public OpenSweeps {
   AccelerationSweeps<Space, One> acceleration_;
   struct None {};
   template <class Sweeps>
-  using InSpace = WhenAsked<std::conditional_t<Space::dimension == 6, Sweeps, None>>;
+  using InSpace = Lazy<std::conditional_t<Space::dimension == 6, Sweeps, None>>;
   InSpace<CompositeSweeps<Spatial, One>> composite_;
   InSpace<InverseDynamicsSweeps<Spatial, One>> inverse_;
-  WhenAsked<DirectionalPass<Space, 1, One>> along_;
+  Lazy<DirectionalPass<Space, 1, One>> along_;
   std::vector<One> scratch_, place_;
   double t_ = 0;
   bool place_kept_ = false;

@@ -2,7 +2,7 @@
 #include <momenta/core/expression/tape.h>
 #include <momenta/core/scene/lagrangian/lagrangian_formulas.h>
 #include <momenta/core/scene/lagrangian/lagrangian_model.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 
 #include <algorithm>
 #include <utility>

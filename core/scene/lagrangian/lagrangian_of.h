@@ -8,11 +8,11 @@
 //     template <class S> void constraints(const S* q, const S& t, S* phi) const;          // optional
 //   };
 //
-// The class is called once, with numbers that record operations (core/expression/written.h): the
+// The class is called once, with numbers that record operations (core/expression/traced.h): the
 // result is a Lagrangian of formulas, as if typed, to the last bit where no definitions were
 // needed; it may be written to a file.
 
-#include <momenta/core/expression/written.h>
+#include <momenta/core/expression/traced.h>
 #include <momenta/core/scene/lagrangian.h>
 
 #include <string>
@@ -33,11 +33,11 @@ LagrangianSpec lagrangian_of(const System& system,
 
 /// Whether a class has forces, or constraints, as above.
 template <class System>
-concept WithForces = requires(const System& s, const Written* x, Written* y) {
+concept WithForces = requires(const System& s, const Traced* x, Traced* y) {
   s.forces(x, x, *x, y);
 };
 template <class System>
-concept WithConstraints = requires(const System& s, const Written* x, Written* y) {
+concept WithConstraints = requires(const System& s, const Traced* x, Traced* y) {
   s.constraints(x, *x, y);
 };
 
@@ -52,21 +52,21 @@ LagrangianSpec lagrangian_of(const System& system,
                              std::vector<LagrangianSpec::Constraint> constraints) {
   expect_constraints(WithConstraints<System>, constraints.size());
   const std::size_t n = coordinates.size();
-  const std::vector<Written> x = Written::variables(2 * static_cast<int>(n) + 1);  // q, q̇, t
-  const Written* const q = x.data();
-  const Written *const v = q + n, *const t = v + n;
+  const std::vector<Traced> x = Traced::variables(2 * static_cast<int>(n) + 1);  // q, q̇, t
+  const Traced* const q = x.data();
+  const Traced *const v = q + n, *const t = v + n;
   LagrangianSpec spec;
   const std::vector<std::string> names = formula_names(coordinates);
-  const Written lagrangian = system.lagrangian(q, v, *t);
+  const Traced lagrangian = system.lagrangian(q, v, *t);
   spec.lagrangian.text = lagrangian.text(names);
   if constexpr (WithForces<System>) {
-    std::vector<Written> tau(n);
+    std::vector<Traced> tau(n);
     system.forces(q, v, *t, tau.data());
     for (std::size_t i = 0; i < n; ++i)
       if (!tau[i].is(0)) spec.forces.push_back({coordinates[i].name, {tau[i].text(names), {}}, {}});
   }
   if constexpr (WithConstraints<System>) {
-    std::vector<Written> phi(constraints.size());
+    std::vector<Traced> phi(constraints.size());
     system.constraints(q, *t, phi.data());
     for (std::size_t i = 0; i < phi.size(); ++i) constraints[i].equation.text = phi[i].text(names);
   }

@@ -1,12 +1,12 @@
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/dae/analysis/chain/closed_chain_inside.h>
+#include <momenta/dae/analysis/chain/closed_chain_impl.h>
 
 #include <limits>
 
 namespace momenta {
 
 ClosedChain::ClosedChain(const Scene& scene, MechanismOptions options)
-    : inside_(std::make_unique<Inside>(scene, options)) {
+    : impl_(std::make_unique<Impl>(scene, options)) {
   refuse_bearings(scene, "ClosedChain");
 }
 ClosedChain::~ClosedChain() = default;
@@ -14,18 +14,18 @@ ClosedChain::ClosedChain(ClosedChain&&) noexcept = default;
 ClosedChain& ClosedChain::operator=(ClosedChain&&) noexcept = default;
 
 const Mechanism& ClosedChain::mechanism() const {
-  return inside_->mechanism;
+  return impl_->mechanism;
 }
 const std::string& ClosedChain::failure() const {
-  return inside_->failure;
+  return impl_->failure;
 }
 Assembly ClosedChain::assemble() const {
-  return momenta::assemble(inside_->mechanism);
+  return momenta::assemble(impl_->mechanism);
 }
 
 bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef qdot,
                         VectorRef pdot, double leak) {
-  Inside& in = *inside_;
+  Impl& in = *impl_;
   expect_sizes("rates",
                {{"q", q.size()}, {"p", p.size()}, {"qdot", qdot.size()}, {"pdot", pdot.size()}},
                {nq(), nv(), nq(), nv()});
@@ -41,16 +41,15 @@ bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef&
 bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                         const ConstVectorRef& tau, VectorRef qdot, VectorRef pdot, double leak) {
   expect_size("rates", "tau", tau.size(), nv());
-  if (!given_finite(inside_->failure, t, {"q", q}, {"tau", tau}) ||
-      !rates(t, q, p, qdot, pdot, leak))
+  if (!given_finite(impl_->failure, t, {"q", q}, {"tau", tau}) || !rates(t, q, p, qdot, pdot, leak))
     return false;
   pdot += tau;  // u and σ follow from p alone
-  return found_finite(inside_->failure, pdot);
+  return found_finite(impl_->failure, pdot);
 }
 
 bool ClosedChain::velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                              VectorRef u, VectorRef sigma) {
-  Inside& in = *inside_;
+  Impl& in = *impl_;
   expect_sizes("velocities",
                {{"q", q.size()}, {"p", p.size()}, {"u", u.size()}, {"sigma", sigma.size()}},
                {nq(), nv(), nv(), m()});
@@ -61,7 +60,7 @@ bool ClosedChain::velocities(double t, const ConstVectorRef& q, const ConstVecto
 
 bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
                                 VectorRef udot, VectorRef lambda) {
-  Inside& in = *inside_;
+  Impl& in = *impl_;
   expect_sizes("accelerations",
                {{"q", q.size()}, {"u", u.size()}, {"udot", udot.size()}, {"lambda", lambda.size()}},
                {nq(), nv(), nv(), m()});
@@ -75,7 +74,7 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
 
 bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
                                 const ConstVectorRef& tau, VectorRef udot, VectorRef lambda) {
-  Inside& in = *inside_;
+  Impl& in = *impl_;
   expect_sizes("accelerations",
                {{"tau", tau.size()},
                 {"q", q.size()},
@@ -95,7 +94,7 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
 
 bool ClosedChain::correct(double t, VectorRef q, VectorRef u) {
   constexpr int most_steps = 20;
-  Inside& in = *inside_;
+  Impl& in = *impl_;
   expect_sizes("correct", {{"q", q.size()}, {"u", u.size()}}, {nq(), nv()});
   if (!given_finite(in.failure, t, {"q", q}, {"u", u})) return false;
   if (in.tree) return true;

@@ -122,8 +122,8 @@ class ClosedChain {
   const std::string& failure() const;
 
  private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace momenta

@@ -1,8 +1,8 @@
 // Many states of a mechanism at once: in the lanes of the sweeps' registers and shared among
 // threads where they carry the loops, else one by one.
 
-#include <momenta/core/open_chain/share.h>
-#include <momenta/dae/analysis/chain/closed_chain_inside.h>
+#include <momenta/core/open_chain/parallel_for.h>
+#include <momenta/dae/analysis/chain/closed_chain_impl.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/solver_choice.h>
 
@@ -27,8 +27,8 @@ void expect_states(const char* call, double t, Eigen::Index count, int threads,
 
 }  // namespace
 
-bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool of_momenta,
-                                       double leak, int threads) {
+bool ClosedChain::Impl::side_by_side(double t, const LoopedStates& all, bool of_momenta,
+                                     double leak, int threads) {
   if (all.count == 0 || mechanism.solver().kkt() != KktChoice::sweeps ||
       (mechanism.has_body_forces() && !mechanism.plan().planar) || mechanism.has_forces_apart())
     return false;
@@ -39,7 +39,7 @@ bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool o
                     parts = std::min(static_cast<std::size_t>(threads), packs);
   while (batches.size() < parts) batches.push_back(mechanism.solver().sweeps());
   std::atomic<bool> done = true;
-  share(static_cast<int>(parts), parts, [&](std::size_t part) {
+  parallel_for(static_cast<int>(parts), parts, [&](std::size_t part) {
     const std::size_t first = packs * part / parts * width,
                       last = std::min(all.count, packs * (part + 1) / parts * width);
     LoopedStates states = all.part(first, last - first);
@@ -55,7 +55,7 @@ bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool o
 
 /// Calls act(i) state by state; where it is false, fills the columns of the state with NaN.
 template <class Act>
-bool ClosedChain::Inside::one_by_one(Act&& act, StatesRef a, StatesRef b) {
+bool ClosedChain::Impl::one_by_one(Act&& act, StatesRef a, StatesRef b) {
   std::string first;
   for (Eigen::Index i = 0; i < a.cols(); ++i) {
     if (act(i)) continue;
@@ -67,10 +67,9 @@ bool ClosedChain::Inside::one_by_one(Act&& act, StatesRef a, StatesRef b) {
   return first.empty();
 }
 
-bool ClosedChain::Inside::rates_of_states(ClosedChain& chain, double t, const ConstStatesRef& q,
-                                          const ConstStatesRef& p, const ConstStatesRef* tau,
-                                          StatesRef qdot, StatesRef pdot, double leak,
-                                          int threads) {
+bool ClosedChain::Impl::rates_of_states(ClosedChain& chain, double t, const ConstStatesRef& q,
+                                        const ConstStatesRef& p, const ConstStatesRef* tau,
+                                        StatesRef qdot, StatesRef pdot, double leak, int threads) {
   const char* call = "rates_of_states";
   const int nq = mechanism.nq(), nv = mechanism.nv();
   expect_sizes(call,
@@ -125,11 +124,11 @@ bool ClosedChain::Inside::rates_of_states(ClosedChain& chain, double t, const Co
       qdot, pdot);
 }
 
-bool ClosedChain::Inside::accelerations_of_states(ClosedChain& chain, double t,
-                                                  const ConstStatesRef& q,
-                                                  const ConstStatesRef& rates,
-                                                  const ConstStatesRef* tau, StatesRef udot,
-                                                  StatesRef lambda, int threads) {
+bool ClosedChain::Impl::accelerations_of_states(ClosedChain& chain, double t,
+                                                const ConstStatesRef& q,
+                                                const ConstStatesRef& rates,
+                                                const ConstStatesRef* tau, StatesRef udot,
+                                                StatesRef lambda, int threads) {
   const char* call = "accelerations_of_states";
   const int nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
   expect_sizes(call,
@@ -177,30 +176,30 @@ bool ClosedChain::Inside::accelerations_of_states(ClosedChain& chain, double t,
 
 bool ClosedChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
                                   StatesRef qdot, StatesRef pdot, double leak, int threads) {
-  return inside_->rates_of_states(*this, t, q, p, nullptr, qdot, pdot, leak, threads);
+  return impl_->rates_of_states(*this, t, q, p, nullptr, qdot, pdot, leak, threads);
 }
 bool ClosedChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
                                   const ConstStatesRef& tau, StatesRef qdot, StatesRef pdot,
                                   double leak, int threads) {
-  return inside_->rates_of_states(*this, t, q, p, &tau, qdot, pdot, leak, threads);
+  return impl_->rates_of_states(*this, t, q, p, &tau, qdot, pdot, leak, threads);
 }
 bool ClosedChain::accelerations_of_states(double t, const ConstStatesRef& q,
                                           const ConstStatesRef& u, StatesRef udot, StatesRef lambda,
                                           int threads) {
-  return inside_->accelerations_of_states(*this, t, q, u, nullptr, udot, lambda, threads);
+  return impl_->accelerations_of_states(*this, t, q, u, nullptr, udot, lambda, threads);
 }
 bool ClosedChain::accelerations_of_states(double t, const ConstStatesRef& q,
                                           const ConstStatesRef& u, const ConstStatesRef& tau,
                                           StatesRef udot, StatesRef lambda, int threads) {
-  return inside_->accelerations_of_states(*this, t, q, u, &tau, udot, lambda, threads);
+  return impl_->accelerations_of_states(*this, t, q, u, &tau, udot, lambda, threads);
 }
 
 void ClosedChain::momenta(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef p) {
   expect_sizes("momenta", {{"q", q.size()}, {"u", u.size()}, {"p", p.size()}}, {nq(), nv(), nv()});
-  expect_given_finite("momenta", inside_->failure, t, {"q", q}, {"u", u});
-  inside_->place(t, q, u);
-  inside_->e->momenta(nullptr, p.data());
-  expect_found_finite("momenta", inside_->failure, p);
+  expect_given_finite("momenta", impl_->failure, t, {"q", q}, {"u", u});
+  impl_->place(t, q, u);
+  impl_->e->momenta(nullptr, p.data());
+  expect_found_finite("momenta", impl_->failure, p);
 }
 
 void ClosedChain::joint_forces(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -213,12 +212,12 @@ void ClosedChain::joint_forces(double t, const ConstVectorRef& q, const ConstVec
                 {"lambda", lambda.size()},
                 {"tau", tau.size()}},
                {nq(), nv(), nv(), m(), nv()});
-  expect_given_finite("joint_forces", inside_->failure, t, {"q", q}, {"u", u}, {"udot", udot},
+  expect_given_finite("joint_forces", impl_->failure, t, {"q", q}, {"u", u}, {"udot", udot},
                       {"lambda", lambda});
-  inside_->place(t, q, u);
-  inside_->e->joint_forces(q.data(), u.data(), udot.data(), m() > 0 ? lambda.data() : nullptr,
-                           tau.data());
-  expect_found_finite("joint_forces", inside_->failure, tau);
+  impl_->place(t, q, u);
+  impl_->e->joint_forces(q.data(), u.data(), udot.data(), m() > 0 ? lambda.data() : nullptr,
+                         tau.data());
+  expect_found_finite("joint_forces", impl_->failure, tau);
 }
 
 void ClosedChain::constraints(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -226,33 +225,33 @@ void ClosedChain::constraints(double t, const ConstVectorRef& q, const ConstVect
   expect_sizes("constraints",
                {{"q", q.size()}, {"u", u.size()}, {"phi", phi.size()}, {"phidot", phidot.size()}},
                {nq(), nv(), m(), m()});
-  expect_given_finite("constraints", inside_->failure, t, {"q", q}, {"u", u});
-  inside_->place(t, q, u);
-  inside_->e->positions(phi.data());
-  inside_->e->velocities(phidot.data());
-  expect_found_finite("constraints", inside_->failure, phi, phidot);
+  expect_given_finite("constraints", impl_->failure, t, {"q", q}, {"u", u});
+  impl_->place(t, q, u);
+  impl_->e->positions(phi.data());
+  impl_->e->velocities(phidot.data());
+  expect_found_finite("constraints", impl_->failure, phi, phidot);
 }
 
 Eigen::MatrixXd ClosedChain::jacobian(double t, const ConstVectorRef& q) {
   expect_size("jacobian", "q", q.size(), nq());
-  expect_given_finite("jacobian", inside_->failure, t, {"q", q});
-  inside_->e->place(t, q.data());
-  Eigen::MatrixXd found = dense_constraints(inside_->mechanism, *inside_->e);
-  expect_found_finite("jacobian", inside_->failure, found);
+  expect_given_finite("jacobian", impl_->failure, t, {"q", q});
+  impl_->e->place(t, q.data());
+  Eigen::MatrixXd found = dense_constraints(impl_->mechanism, *impl_->e);
+  expect_found_finite("jacobian", impl_->failure, found);
   return found;
 }
 
 Eigen::MatrixXd ClosedChain::mass_matrix(double t, const ConstVectorRef& q) {
   expect_size("mass_matrix", "q", q.size(), nq());
-  expect_given_finite("mass_matrix", inside_->failure, t, {"q", q});
-  inside_->e->place(t, q.data());
-  Eigen::MatrixXd found = dense_mass(inside_->mechanism, *inside_->e);
-  expect_found_finite("mass_matrix", inside_->failure, found);
+  expect_given_finite("mass_matrix", impl_->failure, t, {"q", q});
+  impl_->e->place(t, q.data());
+  Eigen::MatrixXd found = dense_mass(impl_->mechanism, *impl_->e);
+  expect_found_finite("mass_matrix", impl_->failure, found);
   return found;
 }
 
 Energies ClosedChain::energies(double t, const ConstVectorRef& q, const ConstVectorRef& u) {
-  Inside& in = *inside_;
+  Impl& in = *impl_;
   momenta(t, q, u, in.u);
   Energies all;
   all.kinetic = in.e->kinetic();
@@ -266,16 +265,16 @@ Energies ClosedChain::energies(double t, const ConstVectorRef& q, const ConstVec
 Reactions ClosedChain::reactions(double t, const ConstVectorRef& q, const ConstVectorRef& u) {
   Eigen::VectorXd udot(nv()), lambda(m());
   if (!accelerations(t, q, u, udot, lambda)) throw std::runtime_error("reactions: " + failure());
-  return momenta::reactions(inside_->mechanism, t, q, u, udot, lambda);
+  return momenta::reactions(impl_->mechanism, t, q, u, udot, lambda);
 }
 
 void ClosedChain::coordinate_rates(double t, const ConstVectorRef& q, const ConstVectorRef& u,
                                    VectorRef qdot) {
   expect_sizes("coordinate_rates", {{"q", q.size()}, {"u", u.size()}, {"qdot", qdot.size()}},
                {nq(), nv(), nq()});
-  expect_given_finite("coordinate_rates", inside_->failure, t, {"q", q}, {"u", u});
-  inside_->rates_of_coordinates(t, q.data(), u.data(), qdot.data());
-  expect_found_finite("coordinate_rates", inside_->failure, qdot);
+  expect_given_finite("coordinate_rates", impl_->failure, t, {"q", q}, {"u", u});
+  impl_->rates_of_coordinates(t, q.data(), u.data(), qdot.data());
+  expect_found_finite("coordinate_rates", impl_->failure, qdot);
 }
 
 }  // namespace momenta

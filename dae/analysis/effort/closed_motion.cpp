@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/algebra/dense/decompositions.h>
 #include <momenta/dae/analysis/effort/closed_motion.h>
 #include <momenta/dae/mechanism/mechanism.h>

@@ -1,7 +1,7 @@
 #include <momenta/core/open_chain/poses.h>
 #include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/drive.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/effort/actuation.h>
 #include <momenta/dae/analysis/effort/closed_motion.h>
 #include <momenta/dae/analysis/effort/effort.h>

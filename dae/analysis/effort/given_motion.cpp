@@ -1,5 +1,5 @@
 #include <momenta/core/scene/drive.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/effort/given_motion.h>
 #include <momenta/dae/analysis/kinematics/held_coordinate.h>
 

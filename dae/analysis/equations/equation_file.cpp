@@ -1,7 +1,7 @@
 #include <momenta/core/format/toml/fields.h>
 #include <momenta/core/format/toml/set_numbers.h>
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/algebra/structure/assignment.h>
 #include <momenta/dae/analysis/equations/equation_file.h>
 #include <momenta/dae/analysis/equations/equation_system.h>

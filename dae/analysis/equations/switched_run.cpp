@@ -1,8 +1,8 @@
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/input_times.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/text/near_name.h>
 #include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/equations/equation_system.h>
 #include <momenta/dae/analysis/equations/switched_run.h>
 #include <momenta/dae/integrator/integrators.h>

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/algebra/dense/singular_values.h>
 #include <momenta/dae/analysis/kinematics/assemblies.h>
 #include <momenta/dae/analysis/kinematics/held_coordinate.h>

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/kinematics/change_point.h>
 #include <momenta/dae/analysis/kinematics/held_coordinate.h>
 #include <momenta/dae/analysis/kinematics/idle_turns.h>

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/kinematics/isotropic.h>
 #include <momenta/dae/analysis/kinematics/planar_polynomials.h>
 

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/kinematics/held_coordinate.h>
 #include <momenta/dae/analysis/kinematics/transmission.h>
 #include <momenta/dae/mechanism/joint_places.h>

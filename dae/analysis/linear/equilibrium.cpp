@@ -1,9 +1,9 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/lagrangian/lagrangian_model.h>
 #include <momenta/core/text/number_text.h>
-#include <momenta/dae/analysis/linear/downward_ways.h>
 #include <momenta/dae/analysis/linear/equilibrium.h>
 #include <momenta/dae/analysis/linear/local_pencil.h>
+#include <momenta/dae/analysis/linear/negative_curvature.h>
 #include <momenta/dae/analysis/linear/pose_motion.h>
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/kkt/unheld_joints.h>
@@ -290,7 +290,7 @@ class Searcher {
   PoseMotion poses_;
   Evaluation<double>& e_;
   LocalPencil pencil_;
-  DownwardWays ways_;
+  NegativeCurvature ways_;
   double length_;
   bool potential_;
   VectorXd rest_, unit_, scale_;

@@ -14,7 +14,7 @@
 //   settle    μ falls while V − T₀ falls as K foretells and rises when it does not: implicit steps
 //             of length 1/μ of the gradient flow M q̇ = −∇(V − T₀), which ends as Newton's method
 //             (pseudo-transient continuation: Kelley, Keyes, SIAM J. Numer. Anal. 35 (1998) 508).
-//             Saddles on the way are left (downward_ways.h). Of forces without a potential it is the
+//             Saddles on the way are left (negative_curvature.h). Of forces without a potential it is the
 //             work of all forces on the way that counts, in place of the fall of V − T₀.
 //   nearest   Newton's method, μ = 0, steps halved until the forces left fall: it ends at any kind
 //             of equilibrium, a saddle too.

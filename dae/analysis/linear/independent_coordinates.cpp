@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/algebra/dense/decompositions.h>
 #include <momenta/dae/analysis/linear/independent_coordinates.h>
 #include <momenta/dae/analysis/linear/loop_drives.h>

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/effort/given_motion.h>
 #include <momenta/dae/analysis/linear/linear_columns.h>
 #include <momenta/dae/analysis/linear/loop_drives.h>

@@ -416,6 +416,6 @@ auto SpatialLoopSweeps<S, Rows, Momentum, Tree>::looped_branches_rates(const Vec
 #include <momenta/dae/kkt/sweeps/spatial_loop_axes.h>
 #include <momenta/dae/kkt/sweeps/spatial_loop_inward.h>
 #include <momenta/dae/kkt/sweeps/spatial_loop_joints.h>
-#include <momenta/dae/kkt/sweeps/spatial_loop_outset.h>
 #include <momenta/dae/kkt/sweeps/spatial_loop_outward.h>
+#include <momenta/dae/kkt/sweeps/spatial_loop_placing.h>
 #include <momenta/dae/kkt/sweeps/spatial_loop_user.h>

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/mechanism/loop/left_by_files.h>
 #include <momenta/dae/mechanism/loop/loop_choice.h>
 #include <momenta/dae/mechanism/loop/loop_model.h>

@@ -6,10 +6,10 @@
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
+#include <momenta/dae/mechanism/loop/compensated_positions.h>
 #include <momenta/dae/mechanism/loop/driven_loop.h>
 #include <momenta/dae/mechanism/loop/higher_pair.h>
 #include <momenta/dae/mechanism/loop/loop_equation.h>
-#include <momenta/dae/mechanism/loop/lost_places.h>
 #include <momenta/dae/mechanism/loop/rolling_wheel.h>
 
 namespace momenta {
@@ -269,7 +269,7 @@ class LoopPlaces {
   std::vector<RollingWheel<S>> wheels_;
   std::vector<EquationRow<Space, S>> equations_;
   std::vector<Driven> driven_;  ///< at the time of place()
-  LostPlaces<Space> lost_;
+  CompensatedPositions<Space> lost_;
 };
 
 }  // namespace momenta

@@ -1,6 +1,6 @@
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/scene/lagrangian/lagrangian_formulas.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/run/event/event_values.h>
 
 #include <algorithm>

@@ -232,7 +232,7 @@ class Search {
   VectorXd sizes_;
   WantedError error_;
   SweptParts parts_;
-  KeptConditions conditions_;
+  UserConstraints conditions_;
   std::string refused_;  ///< why a step of this start was last taken back
   FitResult result_;
 };

@@ -11,9 +11,9 @@
 // a seed, make it likelier to be the least.
 // Source: Levenberg 1944; Marquardt 1963; Agarwal, Mierle et al., Ceres Solver.
 
-#include <momenta/dae/study/fit/kept_conditions.h>
 #include <momenta/dae/study/fit/search.h>
 #include <momenta/dae/study/fit/swept_parts.h>
+#include <momenta/dae/study/fit/user_constraints.h>
 #include <momenta/dae/study/fit/wanted_error.h>
 
 #include <string>
@@ -39,16 +39,16 @@ struct FitStart : SearchStart {
 
 /// Result of a fit.
 struct FitResult : SearchResult<FitStart> {
-  Column swept;                     ///< the swept coordinate
-  WantedErrors before;              ///< errors of the given scene; NaN: a pose is not reached
-  WantedErrors after;               ///< errors of the best
-  WantedPoses wanted;               ///< as asked
-  std::vector<double> places;       ///< s of each pose of the best [rad or m]
-  Eigen::MatrixXd reached_before;   ///< y of the given scene, poses × quantities; or empty
-  Eigen::MatrixXd reached;          ///< y of the best
-  std::vector<KeptCondition> keep;  ///< conditions in order
-  long evaluations = 0;             ///< evaluations of r, with or without ∂r/∂x
-  long derivatives = 0;             ///< evaluations of ∂r/∂x
+  Column swept;                      ///< the swept coordinate
+  WantedErrors before;               ///< errors of the given scene; NaN: a pose is not reached
+  WantedErrors after;                ///< errors of the best
+  WantedPoses wanted;                ///< as asked
+  std::vector<double> places;        ///< s of each pose of the best [rad or m]
+  Eigen::MatrixXd reached_before;    ///< y of the given scene, poses × quantities; or empty
+  Eigen::MatrixXd reached;           ///< y of the best
+  std::vector<UserConstraint> keep;  ///< conditions in order
+  long evaluations = 0;              ///< evaluations of r, with or without ∂r/∂x
+  long derivatives = 0;              ///< evaluations of ∂r/∂x
   /// One sentence on parameters that can change together without a change of r, to first order;
   /// empty: each matters by itself.
   std::string undetermined;

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/study/fit/least.h>
 #include <momenta/dae/study/fit/starts.h>
 
@@ -199,7 +199,7 @@ class LeastSearch {
   std::unique_ptr<MotionParts> parts_;
   MotionFunction functional_;
   BoundedFunction bounded_;
-  KeptConditions conditions_;
+  UserConstraints conditions_;
   std::vector<std::size_t> curves_;  ///< parts shown by result_.curves
   std::string refused_;              ///< why a step of this start was last taken back
   LeastResult result_;

@@ -10,9 +10,9 @@
 
 #include <momenta/dae/study/fit/constrained_search.h>
 #include <momenta/dae/study/fit/fit.h>
-#include <momenta/dae/study/fit/kept_conditions.h>
 #include <momenta/dae/study/fit/motion_parts.h>
 #include <momenta/dae/study/fit/swept_parts.h>
+#include <momenta/dae/study/fit/user_constraints.h>
 
 #include <optional>
 #include <string>
@@ -42,7 +42,7 @@ struct LeastResult : SearchResult<LeastStart> {
   std::optional<Column> swept;         ///< the swept coordinate
   double before = WantedErrors::none;  ///< J of the given scene; NaN: none
   double after = WantedErrors::none;   ///< J of the best
-  std::vector<KeptCondition> keep;     ///< conditions in order
+  std::vector<UserConstraint> keep;    ///< conditions in order
   Eigen::VectorXd gradient;            ///< dJ/dθ of the best
   std::vector<double> places;          ///< s of the poses of a sweep [rad or m]
   /// A formula of single poses over the places, before and after.

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/study/fit/measured_motion.h>
 #include <momenta/dae/study/fit/named_table.h>
 

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/text/csv_cells.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/study/fit/named_table.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <momenta/core/format/toml/number_at.h>
 #include <momenta/core/format/toml/write_scene.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/study/fit/parametric_mechanism.h>
 

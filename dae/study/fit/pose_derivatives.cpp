@@ -1,5 +1,5 @@
 #include <momenta/core/scalar/sixth_order.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/algebra/dense/decompositions.h>
 #include <momenta/dae/study/fit/pose_derivatives.h>
 #include <momenta/dae/topology/assembly/scaled_loops.h>

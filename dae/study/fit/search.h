@@ -37,7 +37,7 @@ struct SearchStart {
   int iterations = 0;               ///< iterations of the search
   double slope = none;              ///< as in ConstrainedEnd, 0 at a minimum; NaN: not measured
   double violation = 0;             ///< largest of a condition; 0: all kept
-  std::vector<double> multipliers;  ///< by condition, as in KeptCondition
+  std::vector<double> multipliers;  ///< by condition, as in UserConstraint
   bool converged = false;           ///< a minimum that keeps the conditions
   std::string why;                  ///< why not converged, a sentence without full stop
 };

@@ -1,5 +1,5 @@
 #include <momenta/core/scalar/sixth_order.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/effort/motion_reactions.h>
 #include <momenta/dae/analysis/kinematics/held_coordinate.h>
 #include <momenta/dae/analysis/kinematics/transmission.h>

@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/study/fit/wanted_error.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ bool WantedError::start(const VectorXd& parameters, VectorXd& x) {
     for (std::size_t k = 0; k < q.size(); ++k) {
       const VectorXd y = quantities_at(*e, q[k], wanted_.quantities, markers);
       VectorXd apart = VectorXd::Zero(wanted_.poses());
-      for (const Asked& a : asked_)
+      for (const WantedValue& a : asked_)
         apart[a.pose] +=
             std::pow((y[a.quantity] - wanted_.values(a.pose, a.quantity)) / weight(a.quantity), 2);
       for (Eigen::Index i = 0; i < apart.size(); ++i)

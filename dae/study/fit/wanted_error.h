@@ -40,7 +40,7 @@ class WantedError {
   const std::string& why() const { return why_; }  ///< a sentence without full stop
 
  private:
-  struct Asked {
+  struct WantedValue {
     Eigen::Index pose = 0, quantity = 0;
   };
   std::vector<double> places(const Eigen::VectorXd& x) const;
@@ -50,7 +50,7 @@ class WantedError {
   std::string sweep_;
   WantedPoses wanted_;
   PoseDerivatives derivatives_;
-  std::vector<Asked> asked_;
+  std::vector<WantedValue> asked_;
   double extent_ = 1;  ///< [m]
   Eigen::MatrixXd reached_;
   std::string why_;

@@ -1,5 +1,5 @@
 #include <momenta/core/open_chain/poses.h>
-#include <momenta/core/scene/turned_round.h>
+#include <momenta/core/scene/reversed.h>
 #include <momenta/dae/mechanism/loop/loop_choice.h>
 #include <momenta/dae/topology/assembly/closing.h>
 #include <momenta/dae/topology/assembly/displacement_of_mass.h>
@@ -30,7 +30,7 @@ std::optional<Scene> with_ordered_ends(const Scene& scene) {
     };
     if (of(loop.parent) <= of(loop.child)) continue;
     if (!ordered) ordered = scene;
-    ordered->loops[i] = turned_round(loop);
+    ordered->loops[i] = reversed(loop);
   }
   return ordered;
 }

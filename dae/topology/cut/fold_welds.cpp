@@ -151,7 +151,7 @@ LoopSpec folded(LoopSpec loop, const Places& places) {
     for (Vector3d* a : {&loop.axis, &loop.axis2, &loop.direction, &loop.normal})
       *a = child.turn * *a;
   }
-  if (loop.child == "ground") loop = turned_round(loop);
+  if (loop.child == "ground") loop = reversed(loop);
   return loop;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The mechanism that runs integrate in place of the one written: the same without bodies that have
 // no coordinate of their own (fold_welds.h, fold_rotors.h), and with joints cut where that is less
-// work (recut.h). Reports are of the scene as written (written_motion.h).
+// work (recut.h). Reports are of the scene as written (original_scene_motion.h).
 //
 // An evaluation by sweeps costs about c₀ a body and c₁ for each of the squared numbers of equations
 // that are open at it, J in all (cycles.h), with c₀ / c₁ about 8 in the plane and 30 in space.

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/formula.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/topology/cut/interchange.h>
 #include <momenta/dae/topology/cut/relative_motion.h>
 
@@ -66,7 +66,7 @@ int rows_of(JointKind kind, bool planar) {
   return (planar ? 3 : 6) - rates_of(kind);
 }
 
-Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
+RecutRestrictions::RecutRestrictions(const Scene& scene, const std::vector<std::string>& keep)
     : kept(keep.begin(), keep.end()) {
   for (const JointSpec& joint : scene.joints)
     if (joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || joint.bearing ||
@@ -173,12 +173,13 @@ std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start)
   return joints;
 }
 
-bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyMotions& bodies) {
+bool turn_round(JointSpec& joint, Scene& scene, const RecutRestrictions& said,
+                const BodyMotions& bodies) {
   if (joint.bearing && joint.bearing->length > 0) return false;  // bearings lie on the child
   if (joint.kind == JointKind::user) return false;               // its formula is that of the child
   if (!keeps_coordinates(joint.kind)) {
     if (said.of_coordinates.contains(joint.name)) return false;
-    joint = turned_round(joint);
+    joint = reversed(joint);
     const JointMotion m = joint_motion(joint, bodies.of(joint.parent), bodies.of(joint.child));
     joint.position = m.q;
     joint.velocity = m.u;
@@ -188,7 +189,7 @@ bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyM
   }
   // formulas name the two angles of a universal joint as they are
   if (joint.kind == JointKind::universal && said.in_formulas.contains(joint.name)) return false;
-  joint = turned_round(joint);
+  joint = reversed(joint);
   if (joint.kind != JointKind::universal) return true;
   for (DriveSpec& drive : scene.drives)
     if (drive.joint == joint.name) drive.coordinate = 1 - drive.coordinate;

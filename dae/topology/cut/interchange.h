@@ -2,7 +2,7 @@
 // Joints and loops in each other's place: their kinds, where their bodies stand, and what a scene
 // says of coordinates that would go.
 
-#include <momenta/core/scene/turned_round.h>
+#include <momenta/core/scene/reversed.h>
 #include <momenta/dae/topology/cut/relative_motion.h>
 
 #include <optional>
@@ -20,14 +20,14 @@ std::optional<LoopKind> as_loop(JointKind kind, bool planar);
 int rows_of(JointKind kind, bool planar);
 
 /// Joints and loops, by name, of which the scene says something.
-struct Sayings {
+struct RecutRestrictions {
   std::set<std::string> of_coordinates;  ///< these joints stay joints
   std::set<std::string> driven_loops;
   std::set<std::string> kept;
   std::set<std::string> in_formulas;  ///< of_coordinates, those that formulas name
 
   /// @throws SceneError where `keep` names neither a joint nor a loop
-  Sayings(const Scene& scene, const std::vector<std::string>& keep);
+  RecutRestrictions(const Scene& scene, const std::vector<std::string>& keep);
 };
 
 /// The joint that a loop would be; nothing where there is none or its bodies do not stand so.
@@ -40,6 +40,7 @@ LoopSpec loop_of(const JointSpec& joint);
 std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start);
 
 /// Turns a joint round, with all that names its coordinates; false where these would mean others.
-bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyMotions& bodies);
+bool turn_round(JointSpec& joint, Scene& scene, const RecutRestrictions& said,
+                const BodyMotions& bodies);
 
 }  // namespace momenta

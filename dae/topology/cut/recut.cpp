@@ -1,4 +1,4 @@
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/kkt/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/topology/cut/cycles.h>
@@ -19,7 +19,7 @@ constexpr int long_cycles = 30;  ///< joints on a cycle of another tree than giv
 /// The graph of a scene: its joints, then its loops that tie two bodies.
 class SceneGraph {
  public:
-  SceneGraph(const Mechanism& mechanism, const Sayings& said)
+  SceneGraph(const Mechanism& mechanism, const RecutRestrictions& said)
       : scene_(mechanism.scene()), planar_(mechanism.plan().planar) {
     vertex_["ground"] = 0;
     for (const BodySpec& body : scene_.bodies)
@@ -66,8 +66,8 @@ constexpr int none = -1, no_way = -2;
 /// Sets `result` to the scene with the tree of `edges`. Returns `none`, or the edge of a loop that
 /// is no joint as its bodies stand, or `no_way` where a joint cannot be turned round.
 int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& graph,
-            const std::vector<CutEdge>& edges, const Sayings& said, const BodyMotions& bodies,
-            Recut& result) {
+            const std::vector<CutEdge>& edges, const RecutRestrictions& said,
+            const BodyMotions& bodies, Recut& result) {
   const Scene& given = mechanism.scene();
   const double length = length_of(given);
   Scene& scene = result.scene;
@@ -272,7 +272,7 @@ std::string in_words(const Recut& recut) {
 }
 
 Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<std::string>& keep) {
-  const Sayings said(mechanism.scene(), keep);
+  const RecutRestrictions said(mechanism.scene(), keep);
   Recut best;
   best.scene = mechanism.scene();
   best.before = best.after = cut_cost(mechanism);

@@ -2,8 +2,8 @@
 // Poses and velocities of the bodies of a mechanism, by their names, from its q and u.
 
 #include <momenta/core/open_chain/poses.h>
+#include <momenta/core/scene/reversed.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/scene/turned_round.h>
 #include <momenta/dae/mechanism/mechanism.h>
 #include <momenta/dae/mechanism/start.h>
 

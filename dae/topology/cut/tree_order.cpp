@@ -259,7 +259,7 @@ Scene in_order(const Scene& scene, const std::vector<std::size_t>& place,
   for (JointSpec& joint : ordered.joints)
     if (joint.parent == "ground") joint = *roots[tree++];
   for (std::size_t i = 0; i < loops.turned.size(); ++i)
-    if (loops.turned[i]) ordered.loops[i] = turned_round(scene.loops[i]);
+    if (loops.turned[i]) ordered.loops[i] = reversed(scene.loops[i]);
   if (loops.order.empty()) return ordered;
   std::vector<LoopSpec> sorted;
   sorted.reserve(loops.order.size());

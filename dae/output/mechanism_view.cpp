@@ -1,6 +1,6 @@
 #include <momenta/core/text/number_text.h>
+#include <momenta/dae/output/mechanism_view.h>
 #include <momenta/dae/output/picture_data.h>
-#include <momenta/dae/output/still.h>
 #include <momenta/dae/run/motion.h>
 #include <momenta/dae/topology/assembly/drive_reach.h>
 

@@ -2,15 +2,15 @@
 // The inside of an OpenChain, for its sources alone: tree, plan and the kernel of the plan.
 
 #include <momenta/core/kernel/levels/batch_sweeps.h>
+#include <momenta/core/kernel/levels/lazy.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/massless_joints.h>
 #include <momenta/core/kernel/reactions.h>
 #include <momenta/core/open_chain/arguments.h>
 #include <momenta/core/open_chain/centroidal_sums.h>
 #include <momenta/core/open_chain/open_chain.h>
-#include <momenta/core/open_chain/share.h>
+#include <momenta/core/open_chain/parallel_for.h>
 
 #include <algorithm>
 #include <optional>
@@ -39,11 +39,11 @@ struct Kernel {
   std::unique_ptr<Branches> branches;
   std::unique_ptr<OpenSweeps> sweeps;
   std::vector<std::unique_ptr<BatchSweeps>> batches;  ///< one for each thread
-  WhenAsked<ReactionPass<Space>> reactions;
+  Lazy<ReactionPass<Space>> reactions;
   Workspace<Space, double> w;
 };
 
-struct OpenChain::Inside {
+struct OpenChain::Impl {
   Tree tree;
   Plan plan;
   std::variant<Kernel<Planar>, Kernel<Spatial>> kernel;
@@ -60,7 +60,7 @@ struct OpenChain::Inside {
   /// The sentence on a number of the last call that is not finite, given or found; empty: none.
   std::string not_a_number;
 
-  Inside(Tree t, Plan pl, const Scene& from, int level, bool branches_side_by_side)
+  Impl(Tree t, Plan pl, const Scene& from, int level, bool branches_side_by_side)
       : tree(std::move(t)),
         plan(std::move(pl)),
         kernel(plan.planar ? decltype(kernel)(Kernel<Planar>(
@@ -177,7 +177,7 @@ struct OpenChain::Inside {
       return std::min(all.count, packs * i / parts * width);
     };
     std::vector<char> failed(parts, 0);
-    share(static_cast<int>(parts), parts, [&](std::size_t i) {
+    parallel_for(static_cast<int>(parts), parts, [&](std::size_t i) {
       const std::size_t first = begin(i);
       failed[i] = !run(*k.batches[i], all.part(first, begin(i + 1) - first));
     });

@@ -16,8 +16,8 @@
 
 namespace momenta {
 
-struct ClosedChain::Inside {
-  Inside(const Scene& scene, const MechanismOptions& options)
+struct ClosedChain::Impl {
+  Impl(const Scene& scene, const MechanismOptions& options)
       : mechanism(scene, options), e(mechanism.evaluation<double>()), u(mechanism.nv()) {
     if (mechanism.m() > 0) {
       solver = make_loop_solver(mechanism, *e);

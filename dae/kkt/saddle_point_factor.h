@@ -12,9 +12,9 @@
 
 namespace momenta {
 
-class LeavesFirstMatrix {
+class SaddlePointFactor {
  public:
-  virtual ~LeavesFirstMatrix() = default;
+  virtual ~SaddlePointFactor() = default;
 
   /// Factorises at (t, q), where `e` is placed. `compliance`: E (m), with which no row fades; null:
   /// 0. `fade`: how weak a pivot may be relative to its group's scale. False where a pivot of u, at
@@ -30,10 +30,10 @@ class LeavesFirstMatrix {
   virtual int singular_joint() const = 0;
 };
 
-std::unique_ptr<LeavesFirstMatrix> joint_matrix(const Mechanism& mechanism);
-std::unique_ptr<LeavesFirstMatrix> front_matrix(const Mechanism& mechanism);
+std::unique_ptr<SaddlePointFactor> joint_matrix(const Mechanism& mechanism);
+std::unique_ptr<SaddlePointFactor> front_matrix(const Mechanism& mechanism);
 /// The one of them that solved_by_bodies() asks for.
-std::unique_ptr<LeavesFirstMatrix> leaves_first_matrix(const Mechanism& mechanism);
+std::unique_ptr<SaddlePointFactor> saddle_point_factor(const Mechanism& mechanism);
 
 // Error of eliminating every joint before the loops that hold it. Where a joint moves next to no
 // mass m, a row of its loop has a pivot of 1/m, and the rows that close after it have what the
@@ -68,7 +68,7 @@ using LeavesFirst = std::function<std::optional<bool>(const double* q, const dou
 
 /// ω, of the first pose where it is small enough; infinite where there is no solution. A few
 /// solutions and O(bodies + length of all loops).
-double leaves_first_error(const Mechanism& mechanism, Evaluation<double>& e,
-                          const LeavesFirst& solve);
+double elimination_error(const Mechanism& mechanism, Evaluation<double>& e,
+                         const LeavesFirst& solve);
 
 }  // namespace momenta

@@ -17,11 +17,11 @@
 namespace momenta {
 
 template <class Space>
-class LostPlaces {
+class CompensatedPositions {
  public:
   using Vector = typename Space::template Vector<double>;
 
-  explicit LostPlaces(std::size_t bodies) : lost_(bodies) {}
+  explicit CompensatedPositions(std::size_t bodies) : lost_(bodies) {}
 
   /// Needs poses. O(bodies)
   void outward(const Workspace<Space, double>& w) {

@@ -9,12 +9,12 @@
 
 namespace momenta {
 
-class KeptNumbers {
+class StepArena {
  public:
-  KeptNumbers() = default;
-  KeptNumbers(const KeptNumbers&) = delete;
-  KeptNumbers& operator=(const KeptNumbers&) = delete;
-  ~KeptNumbers();
+  StepArena() = default;
+  StepArena(const StepArena&) = delete;
+  StepArena& operator=(const StepArena&) = delete;
+  ~StepArena();
   /// Room for `count` numbers, not set. @throws std::bad_alloc
   double* next(std::size_t count);
 

@@ -1,5 +1,5 @@
+#include <momenta/dae/topology/cut/original_scene_motion.h>
 #include <momenta/dae/topology/cut/relative_motion.h>
-#include <momenta/dae/topology/cut/written_motion.h>
 
 #include <cmath>
 #include <numbers>
@@ -15,8 +15,8 @@ const Tree::Body& part(const Tree& tree, const std::string& joint, int coordinat
 
 }  // namespace
 
-WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
-                             const FoldedScene& folded, const Mechanism& integrated)
+OriginalSceneMotion::OriginalSceneMotion(const Mechanism& written, const Start& start,
+                                         const FoldedScene& folded, const Mechanism& integrated)
     : last_t_(start.t),
       last_q_(start.q),
       last_u_(start.u),
@@ -53,9 +53,9 @@ WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
   if (!cut_.empty()) bodies_ = std::make_unique<BodyMotions>(integrated, bodies);
 }
 
-void WrittenMotion::read(double t, const Eigen::VectorXd& integrated_q,
-                         const Eigen::VectorXd& integrated_u, Eigen::VectorXd& q,
-                         Eigen::VectorXd& u) {
+void OriginalSceneMotion::read(double t, const Eigen::VectorXd& integrated_q,
+                               const Eigen::VectorXd& integrated_u, Eigen::VectorXd& q,
+                               Eigen::VectorXd& u) {
   u.resize(last_u_.size());
   for (const Copied& c : copied_u_)
     u.segment(c.to, c.count) = integrated_u.segment(c.from, c.count);
@@ -67,14 +67,14 @@ void WrittenMotion::read(double t, const Eigen::VectorXd& integrated_q,
   last_u_ = u;
 }
 
-void WrittenMotion::read_coordinates(double t, const Eigen::VectorXd& integrated_q,
-                                     Eigen::VectorXd& q) {
+void OriginalSceneMotion::read_coordinates(double t, const Eigen::VectorXd& integrated_q,
+                                           Eigen::VectorXd& q) {
   if (bodies_) bodies_->take(t, integrated_q, at_rest_);
   take_all(t, integrated_q, nullptr, q);
 }
 
-void WrittenMotion::take_all(double t, const Eigen::VectorXd& integrated_q, Eigen::VectorXd* u,
-                             Eigen::VectorXd& q) const {
+void OriginalSceneMotion::take_all(double t, const Eigen::VectorXd& integrated_q,
+                                   Eigen::VectorXd* u, Eigen::VectorXd& q) const {
   q.resize(last_q_.size());
   for (const Copied& c : copied_q_)
     q.segment(c.to, c.count) = integrated_q.segment(c.from, c.count);
@@ -96,7 +96,7 @@ void WrittenMotion::take_all(double t, const Eigen::VectorXd& integrated_q, Eige
   follow(t, q, u);
 }
 
-void WrittenMotion::follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) const {
+void OriginalSceneMotion::follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) const {
   for (const Following& f : following_) {
     double value = 0, rate = 0, second = 0;
     if (f.drive) f.drive->evaluate(t, value, rate, second);
@@ -105,7 +105,8 @@ void WrittenMotion::follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) con
   }
 }
 
-void WrittenMotion::take_turns(const Part& part, double t, double rate, Eigen::VectorXd& q) const {
+void OriginalSceneMotion::take_turns(const Part& part, double t, double rate,
+                                     Eigen::VectorXd& q) const {
   if (part.nq >= 4) {
     auto quaternion = q.segment<4>(part.q + part.nq - 4);
     if (quaternion.dot(last_q_.segment<4>(part.q + part.nq - 4)) < 0) quaternion *= -1;
@@ -116,7 +117,7 @@ void WrittenMotion::take_turns(const Part& part, double t, double rate, Eigen::V
   }
 }
 
-void WrittenMotion::carry(Memory& memory) {
+void OriginalSceneMotion::carry(Memory& memory) {
   memory(last_t_);
   memory(last_q_.data(), static_cast<std::size_t>(last_q_.size()));
   memory(last_u_.data(), static_cast<std::size_t>(last_u_.size()));

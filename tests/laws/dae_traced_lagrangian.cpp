@@ -149,7 +149,7 @@ void expect_one_run(const Scene& typed, const Scene& written, const std::string&
 }
 
 class EveryFormOfWritten : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(WrittenLagrangian, EveryFormOfWritten, testing::ValuesIn(form_names()),
+INSTANTIATE_TEST_SUITE_P(TracedLagrangian, EveryFormOfWritten, testing::ValuesIn(form_names()),
                          [](const auto& form) {
                            std::string name = form.param;
                            std::replace(name.begin(), name.end(), '-', '_');
@@ -163,7 +163,7 @@ TEST_P(EveryFormOfWritten, MovesWhatHasEverythingAsTheTypedOne) {
   expect_one_run(parse_scene(crowded), written_crowded(), GetParam());
 }
 
-TEST(WrittenLagrangian, ServesPlainNumbersToo) {
+TEST(TracedLagrangian, ServesPlainNumbersToo) {
   const Crowded system;
   const double q[]{0.3, -0.4, 0.7}, v[]{0.5, 0.2, -0.3};
   double tau[3]{};
@@ -177,7 +177,7 @@ TEST(WrittenLagrangian, ServesPlainNumbersToo) {
   EXPECT_EQ(spec.forces[0].coordinate, "y");
 }
 
-TEST(WrittenLagrangian, IsASceneThatFilesHold) {
+TEST(TracedLagrangian, IsASceneThatFilesHold) {
   const Scene written = written_crowded(), again = parse_scene(scene_text(written));
   EXPECT_EQ(again.lagrangian->lagrangian.text, written.lagrangian->lagrangian.text);
   EXPECT_EQ(again.lagrangian->forces[1].value.text,
@@ -204,7 +204,7 @@ struct RelativeChain {
     return sum;
   }
 };
-TEST(WrittenLagrangian, OfManyLinksIsWrittenByDefinitions) {
+TEST(TracedLagrangian, OfManyLinksIsWrittenByDefinitions) {
   const int n = 24;
   std::vector<LagrangianSpec::Coordinate> angles;
   for (int k = 0; k < n; ++k) angles.push_back({"q" + std::to_string(k), "rad", 0.1 * k, 0.2});
@@ -257,7 +257,7 @@ struct Tied : Free {
   }
 };
 
-TEST(WrittenLagrangian, IsRefusedInOneSentence) {
+TEST(TracedLagrangian, IsRefusedInOneSentence) {
   const auto mechanism = [](LagrangianSpec spec) {
     return sentence([&] {
       Scene scene;

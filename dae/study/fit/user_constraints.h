@@ -11,7 +11,7 @@
 namespace momenta {
 
 /// A condition and how far it is kept.
-struct KeptCondition {
+struct UserConstraint {
   std::string text;    ///< as written
   bool equal = false;  ///< an equation
   double before = 0;   ///< room in the given scene, < 0: broken; equation: difference of its sides;
@@ -21,10 +21,10 @@ struct KeptCondition {
 };
 
 /// Conditions as rows, and their values for reports.
-class KeptConditions {
+class UserConstraints {
  public:
   /// Adds what the conditions are made of to `parts`. @throws std::invalid_argument: one sentence
-  KeptConditions(const std::vector<std::string>& texts, MotionParts& parts);
+  UserConstraints(const std::vector<std::string>& texts, MotionParts& parts);
 
   /// Counts rows and unknowns for motions like this one.
   void count(const MotionValues& values);
@@ -38,10 +38,10 @@ class KeptConditions {
   void at(const MotionValues& values, const Eigen::VectorXd& tau, Eigen::VectorXd& rows,
           Eigen::MatrixXd* by) const;
   /// Conditions with their room in the given scene; `values` null: without a motion.
-  std::vector<KeptCondition> before(const MotionValues* values) const;
+  std::vector<UserConstraint> before(const MotionValues* values) const;
   /// Sets room and multipliers of the best.
   void take_after(const MotionValues& values, const std::vector<double>& multipliers,
-                  std::vector<KeptCondition>& kept) const;
+                  std::vector<UserConstraint>& kept) const;
   /// Largest violation; 0: all kept.
   double violation(const MotionValues& values) const;
   /// Multiplier of each condition, of all its poses together.
@@ -57,7 +57,7 @@ class KeptConditions {
     int extreme = -1;         ///< part with a row per pose; −1: one row, then bounds
     BoundedFunction bounded;  ///< for several extremes
     Eigen::Index rows = 1, first = 0, unknown = 0;
-    /// As in KeptCondition.
+    /// As in UserConstraint.
     double room(const MotionValues& values) const {
       return read.equal ? gap->value(values) : -gap->value(values);
     }

@@ -23,12 +23,12 @@
 namespace momenta {
 
 /// One object serves one thread and one run.
-class WrittenMotion {
+class OriginalSceneMotion {
  public:
   /// `start` of the mechanism as written, from which angles are counted. `folded`: its scene, with
   /// the joints as they were before others were cut. None of these need outlive it.
-  WrittenMotion(const Mechanism& written, const Start& start, const FoldedScene& folded,
-                const Mechanism& integrated);
+  OriginalSceneMotion(const Mechanism& written, const Start& start, const FoldedScene& folded,
+                      const Mechanism& integrated);
 
   /// q (nq), u (nv) of the scene as written, from those of the integrated scene. O(bodies)
   void read(double t, const Eigen::VectorXd& integrated_q, const Eigen::VectorXd& integrated_u,

@@ -62,7 +62,7 @@ Spec with_ends_exchanged(const Spec& spec, bool universal, bool planar) {
 
 /// The joint seen from its child: same q and u for kinds with one axis and for welds; the
 /// coordinates of a universal joint change places. Other kinds have other q and u, left empty.
-inline JointSpec turned_round(const JointSpec& joint) {
+inline JointSpec reversed(const JointSpec& joint) {
   const bool universal = joint.kind == JointKind::universal;
   JointSpec t = with_ends_exchanged(joint, universal, joint.kind == JointKind::planar);
   if (universal) {
@@ -75,7 +75,7 @@ inline JointSpec turned_round(const JointSpec& joint) {
 }
 
 /// The same loop seen from its child. @pre not driven, can_turn_round(loop)
-inline LoopSpec turned_round(const LoopSpec& loop) {
+inline LoopSpec reversed(const LoopSpec& loop) {
   return with_ends_exchanged(loop, loop.kind == LoopKind::universal, loop.kind == LoopKind::planar);
 }
 

@@ -1,5 +1,5 @@
 #include <momenta/core/text/edits.h>
-#include <momenta/core/text/near_name.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/core/text/utf8.h>
 
 #include <algorithm>

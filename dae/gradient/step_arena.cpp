@@ -1,4 +1,4 @@
-#include <momenta/dae/gradient/kept_numbers.h>
+#include <momenta/dae/gradient/step_arena.h>
 
 #include <algorithm>
 #if __has_include(<sys/mman.h>)
@@ -13,18 +13,18 @@ constexpr std::size_t bytes = sizeof(double), cache_line = 64, huge_page = std::
 
 }  // namespace
 
-KeptNumbers::~KeptNumbers() {
+StepArena::~StepArena() {
   for (const Block& block : blocks_) ::operator delete(block.first, block.alignment);
 }
 
-double* KeptNumbers::next(std::size_t count) {
+double* StepArena::next(std::size_t count) {
   if (used_ + count > size_) begin_block(count);
   double* const room = blocks_.back().first + used_;
   used_ += count;
   return room;
 }
 
-void KeptNumbers::begin_block(std::size_t count) {
+void StepArena::begin_block(std::size_t count) {
   const std::size_t wanted =
       std::max(count * bytes, std::clamp(2 * size_ * bytes, first_block, largest_block));
   const bool huge = wanted >= huge_page;

@@ -13,11 +13,11 @@
 
 namespace momenta::program {
 
-class KeptRun {
+class CheckpointFile {
  public:
   /// Looks in --out for a run of the same command; rows have `columns` columns.
   /// @throws std::invalid_argument where another command was killed there
-  KeptRun(const Options& o, std::size_t columns);
+  CheckpointFile(const Options& o, std::size_t columns);
 
   /// Where to continue; null: at the start.
   const Checkpoint* from() const { return from_ ? &*from_ : nullptr; }

@@ -6,7 +6,7 @@
 namespace momenta {
 
 template <class Sweeps>
-class WhenAsked {
+class Lazy {
  public:
   /// @pre the same tree in every call
   template <class Tree>

@@ -23,12 +23,12 @@
 
 namespace momenta {
 
-class Apart {
+class LoopClosureMonitor {
  public:
   static constexpr double most = 0.25;
 
   /// @pre mechanism.m() > 0
-  Apart(const Mechanism& mechanism, const RunSettings& s)
+  LoopClosureMonitor(const Mechanism& mechanism, const RunSettings& s)
       : mechanism_(mechanism), units_(mechanism) {
     const Integrator& method = integrator(s.integrator);
     if ((s.project || holds_positions(s.form)) && method.step == Integrator::Step::adaptive)

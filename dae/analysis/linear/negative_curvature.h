@@ -13,10 +13,10 @@
 
 namespace momenta {
 
-class DownwardWays {
+class NegativeCurvature {
  public:
   /// `poses` must outlive it.
-  DownwardWays(const Mechanism& mechanism, PoseMotion& poses);
+  NegativeCurvature(const Mechanism& mechanism, PoseMotion& poses);
 
   /// Sum of the directions, each with yᵀMy = 1 (nv), at (t, q) with λ; empty: none. `factored`: K +
   /// μM there, μ small. `symmetric`: K is, on Φ_q y = 0

@@ -1,4 +1,4 @@
-#include <momenta/core/open_chain/share.h>
+#include <momenta/core/open_chain/parallel_for.h>
 
 #include <atomic>
 #include <exception>
@@ -8,7 +8,7 @@
 
 namespace momenta {
 
-void share(int threads, std::size_t count, const std::function<void(std::size_t)>& work) {
+void parallel_for(int threads, std::size_t count, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   std::exception_ptr thrown;
   std::mutex turn;

@@ -1,4 +1,4 @@
-#include "kept_run.h"
+#include "checkpoint_file.h"
 
 #include <momenta/dae/output/csv.h>
 #include <momenta/dae/study/run_record.h>
@@ -24,7 +24,7 @@ std::string last_line(const std::string& text) {
 
 }  // namespace
 
-KeptRun::KeptRun(const Options& o, std::size_t columns)
+CheckpointFile::CheckpointFile(const Options& o, std::size_t columns)
     : o_(o),
       file_(o.out / "checkpoint.json"),
       part_(o.out / (o.data == "hdf5" ? "run.h5.part" : "trajectory.csv.part")),
@@ -36,7 +36,7 @@ KeptRun::KeptRun(const Options& o, std::size_t columns)
     anew_ = part_.string() + " of a run that was killed has no checkpoint beside it";
 }
 
-void KeptRun::read(const std::string& text, std::size_t columns) {
+void CheckpointFile::read(const std::string& text, std::size_t columns) {
   const auto all = nlohmann::json::parse(text, nullptr, false);
   if (!all.is_object()) return;
   const auto told = [&](const char* name) {
@@ -75,7 +75,7 @@ void KeptRun::read(const std::string& text, std::size_t columns) {
   anew_ = file_.string() + " is not of the trajectory beside it";
 }
 
-void KeptRun::begin() {
+void CheckpointFile::begin() {
   if (o_.out.empty()) return;
   if (!from_) remove();
   if (o_.quiet) return;
@@ -86,8 +86,8 @@ void KeptRun::begin() {
     std::fprintf(stderr, "momenta: %s: begun anew\n", anew_.c_str());
 }
 
-void KeptRun::note(TrajectoryFile& trajectory, const std::vector<double>& row,
-                   const std::function<Checkpoint()>& make) {
+void CheckpointFile::note(TrajectoryFile& trajectory, const std::vector<double>& row,
+                          const std::function<Checkpoint()>& make) {
   const auto began = Clock::now();
   if (failed_ || began < next_ || row.empty() || !trajectory.can_go_on() || !trajectory.flush())
     return;
@@ -105,7 +105,7 @@ void KeptRun::note(TrajectoryFile& trajectory, const std::vector<double>& row,
   next_ = now + std::max<Clock::duration>(least_between, times_its_cost * (now - began));
 }
 
-void KeptRun::remove() const {
+void CheckpointFile::remove() const {
   if (o_.out.empty()) return;
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);

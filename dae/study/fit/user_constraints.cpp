@@ -1,4 +1,4 @@
-#include <momenta/dae/study/fit/kept_conditions.h>
+#include <momenta/dae/study/fit/user_constraints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-KeptConditions::KeptConditions(const std::vector<std::string>& texts, MotionParts& parts) {
+UserConstraints::UserConstraints(const std::vector<std::string>& texts, MotionParts& parts) {
   for (const std::string& text : texts) {
     MotionCondition read = MotionCondition::from_text(text, parts.parameter_names());
     auto gap = std::make_unique<MotionFunction>(read.gap, parts);
@@ -19,7 +19,7 @@ KeptConditions::KeptConditions(const std::vector<std::string>& texts, MotionPart
   }
 }
 
-void KeptConditions::count(const MotionValues& values) {
+void UserConstraints::count(const MotionValues& values) {
   inequalities_ = equalities_ = 0;
   unknowns_ = 0;
   for (const bool equal : {false, true})
@@ -44,16 +44,16 @@ void KeptConditions::count(const MotionValues& values) {
     }
 }
 
-void KeptConditions::start(const MotionValues& values, Ref<VectorXd> tau,
-                           Ref<VectorXd> sizes) const {
+void UserConstraints::start(const MotionValues& values, Ref<VectorXd> tau,
+                            Ref<VectorXd> sizes) const {
   for (const Condition& c : conditions_)
     if (c.extreme < 0 && !c.read.equal)
       c.bounded.start(values, tau.segment(c.unknown, c.bounded.unknowns()),
                       sizes.segment(c.unknown, c.bounded.unknowns()));
 }
 
-void KeptConditions::at(const MotionValues& values, const VectorXd& tau, VectorXd& rows,
-                        MatrixXd* by) const {
+void UserConstraints::at(const MotionValues& values, const VectorXd& tau, VectorXd& rows,
+                         MatrixXd* by) const {
   rows.resize(inequalities_ + equalities_);
   const Index n = by ? values.parameters_by.cols() : 0;
   if (by) by->setZero(rows.size(), n + unknowns_);
@@ -82,22 +82,22 @@ void KeptConditions::at(const MotionValues& values, const VectorXd& tau, VectorX
   }
 }
 
-std::vector<KeptCondition> KeptConditions::before(const MotionValues* values) const {
-  std::vector<KeptCondition> all;
+std::vector<UserConstraint> UserConstraints::before(const MotionValues* values) const {
+  std::vector<UserConstraint> all;
   for (const Condition& c : conditions_)
     all.push_back({c.read.text, c.read.equal, values ? c.room(*values) : NAN, NAN, 0});
   return all;
 }
 
-void KeptConditions::take_after(const MotionValues& values, const std::vector<double>& multipliers,
-                                std::vector<KeptCondition>& kept) const {
+void UserConstraints::take_after(const MotionValues& values, const std::vector<double>& multipliers,
+                                 std::vector<UserConstraint>& kept) const {
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     kept[i].after = conditions_[i].room(values);
     if (i < multipliers.size()) kept[i].multiplier = multipliers[i];
   }
 }
 
-double KeptConditions::violation(const MotionValues& values) const {
+double UserConstraints::violation(const MotionValues& values) const {
   double most = 0;
   for (const Condition& c : conditions_) {
     const double gap = c.gap->value(values);
@@ -106,7 +106,7 @@ double KeptConditions::violation(const MotionValues& values) const {
   return most;
 }
 
-std::vector<double> KeptConditions::multipliers(const VectorXd& of_rows) const {
+std::vector<double> UserConstraints::multipliers(const VectorXd& of_rows) const {
   std::vector<double> all;
   for (const Condition& c : conditions_)
     all.push_back(c.extreme >= 0 ? of_rows.segment(c.first, c.rows).sum() : of_rows[c.first]);

@@ -1,5 +1,5 @@
 #include <momenta/core/format/toml/write_scene.h>
-#include <momenta/dae/gradient/numbers_alone.h>
+#include <momenta/dae/gradient/scene_difference.h>
 
 #include <algorithm>
 #include <utility>
@@ -105,14 +105,14 @@ void take_drives(Scene& other, const Scene& own) {
 
 }  // namespace
 
-NumbersAlone::NumbersAlone(const Scene& scene, Change known, Forces forces)
+SceneDifference::SceneDifference(const Scene& scene, Change known, Forces forces)
     : scene_(scene),
       known_(known),
       forces_(forces),
       text_(scene_text(scene)),
       formulas_(formulas_of(scene, known < Change::drives)) {}
 
-Change NumbersAlone::of(Scene other) const {
+Change SceneDifference::of(Scene other) const {
   if (other.bodies.size() != scene_.bodies.size() || other.joints.size() != scene_.joints.size() ||
       other.loops.size() != scene_.loops.size() || other.forces.size() != scene_.forces.size() ||
       other.parameters.size() != scene_.parameters.size())

@@ -20,10 +20,10 @@ enum class Change {
 /// Springs and dampers linear in one length, or also dead bands, stops, wrenches and bushings.
 enum class Forces { plain, all };
 
-class NumbersAlone {
+class SceneDifference {
  public:
   /// Differences beyond `known` or in other forces are `more`. The scene must outlive it.
-  NumbersAlone(const Scene& scene, Change known, Forces forces);
+  SceneDifference(const Scene& scene, Change known, Forces forces);
   /// O(text of the scene)
   Change of(Scene other) const;
 

@@ -2,7 +2,7 @@
 // which the compiler computes operands.
 
 #include <gtest/gtest.h>
-#include <momenta/core/expression/written.h>
+#include <momenta/core/expression/traced.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -14,7 +14,7 @@ namespace {
 
 using formula::Instruction;
 
-void expect_typed(const Written& written, const std::string& text) {
+void expect_typed(const Traced& written, const std::string& text) {
   const std::vector<std::string> names{"x", "y", "z"};
   const Expression typed(text, names), found(written.text(names), names);
   ASSERT_EQ(found.tape().size(), typed.tape().size()) << text;
@@ -27,11 +27,11 @@ void expect_typed(const Written& written, const std::string& text) {
   EXPECT_EQ(found.outputs(), typed.outputs()) << text;
 }
 
-TEST(Written, HasTheTapesOfTheParser) {
-  const std::vector<Written> all = Written::variables(3);
-  const Written &x = all[0], &y = all[1], &z = all[2];
+TEST(Traced, HasTheTapesOfTheParser) {
+  const std::vector<Traced> all = Traced::variables(3);
+  const Traced &x = all[0], &y = all[1], &z = all[2];
   expect_typed(x, "x");
-  expect_typed(Written(2.5), "2.5");
+  expect_typed(Traced(2.5), "2.5");
   expect_typed(sin(x) * cos(y) + tan(z) * exp(x), "sin(x)*cos(y) + tan(z)*exp(x)");
   expect_typed(x - y - z, "x - y - z");
   expect_typed(x / y / (z + 3), "x/y/(z + 3)");
@@ -48,8 +48,8 @@ TEST(Written, HasTheTapesOfTheParser) {
                "if(x < y or not (y > 0 and z == 1), x, y)");
   expect_typed(choose(x <= y, choose(y >= z, x, y), choose(x != 2, z, 0)),
                "if(x <= y, if(y >= z, x, y), if(x != 2, z, 0))");
-  expect_typed(choose(Written(1) < Written(2), x, y), "x");
-  Written sum = x;
+  expect_typed(choose(Traced(1) < Traced(2), x, y), "x");
+  Traced sum = x;
   sum += y;
   sum *= z;
   sum -= 1;
@@ -57,16 +57,16 @@ TEST(Written, HasTheTapesOfTheParser) {
   expect_typed(sum, "((x + y)*z - 1)/x");
 }
 
-TEST(Written, ComputesNumbersAtOnce) {
-  EXPECT_TRUE((Written(2) * 3 + pow(Written(2), 3)).is(14));
-  EXPECT_TRUE(Written().is(0));
-  EXPECT_FALSE(Written::variables(1)[0].is(0));
+TEST(Traced, ComputesNumbersAtOnce) {
+  EXPECT_TRUE((Traced(2) * 3 + pow(Traced(2), 3)).is(14));
+  EXPECT_TRUE(Traced().is(0));
+  EXPECT_FALSE(Traced::variables(1)[0].is(0));
 }
 
-TEST(Written, IsTextThatReadsBack) {
+TEST(Traced, IsTextThatReadsBack) {
   const std::vector<std::string> names{"x", "y", "z"};
-  const std::vector<Written> all = Written::variables(3);
-  const Written &x = all[0], &y = all[1], &z = all[2];
+  const std::vector<Traced> all = Traced::variables(3);
+  const Traced &x = all[0], &y = all[1], &z = all[2];
   EXPECT_EQ((-pow(x + y, 2) * (x - (y - z)) / (x * (y / z))).text(names),
             "-(x + y)^2*(x - (y - z))/(x*(y/z))");
   EXPECT_EQ((-(x * y) - -z).text(names), "-(x*y) - -z");
@@ -76,22 +76,22 @@ TEST(Written, IsTextThatReadsBack) {
   EXPECT_EQ(choose(!(x < y && y < z) || x == 2, -x, pow(-2.0, y)).text(names),
             "if(not (x < y and y < z) or x == 2, -x, (-2)^y)");
   EXPECT_EQ(
-      equations::thrown<std::logic_error>([&] { (void)(x / 0.0 + Written(1) / 0).text(names); }),
+      equations::thrown<std::logic_error>([&] { (void)(x / 0.0 + Traced(1) / 0).text(names); }),
       "a formula has a number in it that is infinite, expected finite numbers");
 }
 
 // A text without definitions would be of 2^60 characters, and 5000 operations deep.
-TEST(Written, DefinesWhatIsUsedAgain) {
+TEST(Traced, DefinesWhatIsUsedAgain) {
   const std::vector<std::string> names{"s", "s1", "t"};
-  const std::vector<Written> all = Written::variables(3);
-  Written product = all[0];
+  const std::vector<Traced> all = Traced::variables(3);
+  Traced product = all[0];
   for (int i = 0; i < 60; ++i) product = product * product + all[1];
   const std::string text = product.text(names);
   EXPECT_LT(text.size(), 5000U);
   EXPECT_TRUE(text.starts_with("s_1 := ")) << text;
   EXPECT_EQ(Expression(text, names).tape().size(), 2 + 2 * 60U);
 
-  Written deep = all[2];
+  Traced deep = all[2];
   double expected = 0.3;
   for (int i = 0; i < 5000; ++i) {
     deep = sin(deep) + all[2];
@@ -101,7 +101,7 @@ TEST(Written, DefinesWhatIsUsedAgain) {
   EXPECT_EQ(Expression(deep.text(names), names)(x), expected);
 }
 
-TEST(Written, DefinitionsAreRefusedInOneSentence) {
+TEST(Traced, DefinitionsAreRefusedInOneSentence) {
   const std::vector<std::string> names{"x", "y"};
   const auto told = [&](const std::string& text) -> std::string {
     try {
@@ -125,10 +125,10 @@ TEST(Written, DefinitionsAreRefusedInOneSentence) {
   EXPECT_EQ(told("q + 1; q := 2"), "0: unknown name 'q', expected one of: x, y, pi");
 }
 
-TEST(Written, RefusesNumbersOfTwoFormulas) {
-  const Written x = Written::variables(1)[0], y = Written::variables(1)[0];
+TEST(Traced, RefusesNumbersOfTwoFormulas) {
+  const Traced x = Traced::variables(1)[0], y = Traced::variables(1)[0];
   EXPECT_EQ(equations::thrown<std::logic_error>([&] { (void)(x + y); }),
-            "a formula has variables of two calls of Written::variables in it, expected those "
+            "a formula has variables of two calls of Traced::variables in it, expected those "
             "of one: has a number been kept from another formula?");
 }
 

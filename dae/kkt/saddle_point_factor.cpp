@@ -3,7 +3,7 @@
 #include <momenta/dae/kkt/factor/body_fronts.h>
 #include <momenta/dae/kkt/factor/faded_pivot.h>
 #include <momenta/dae/kkt/factor/filtered_factor.h>
-#include <momenta/dae/kkt/leaves_first.h>
+#include <momenta/dae/kkt/saddle_point_factor.h>
 #include <momenta/dae/kkt/solver_choice.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace momenta {
 
 namespace {
 
-class OfJoints final : public LeavesFirstMatrix {
+class OfJoints final : public SaddlePointFactor {
  public:
   explicit OfJoints(const Mechanism& mechanism)
       : scale_(mechanism),
@@ -46,7 +46,7 @@ class OfJoints final : public LeavesFirstMatrix {
 };
 
 template <class Space>
-class OfBodies final : public LeavesFirstMatrix {
+class OfBodies final : public SaddlePointFactor {
  public:
   OfBodies(const Mechanism& mechanism, std::unique_ptr<BodyMatrix<Space>> equations)
       : equations_(std::move(equations)),
@@ -81,20 +81,20 @@ class OfBodies final : public LeavesFirstMatrix {
 
 }  // namespace
 
-std::unique_ptr<LeavesFirstMatrix> joint_matrix(const Mechanism& mechanism) {
+std::unique_ptr<SaddlePointFactor> joint_matrix(const Mechanism& mechanism) {
   return std::make_unique<OfJoints>(mechanism);
 }
 
-std::unique_ptr<LeavesFirstMatrix> front_matrix(const Mechanism& mechanism) {
+std::unique_ptr<SaddlePointFactor> front_matrix(const Mechanism& mechanism) {
   return with_body_matrix(
       mechanism,
       [&]<class Space>(
-          std::unique_ptr<BodyMatrix<Space>> equations) -> std::unique_ptr<LeavesFirstMatrix> {
+          std::unique_ptr<BodyMatrix<Space>> equations) -> std::unique_ptr<SaddlePointFactor> {
         return std::make_unique<OfBodies<Space>>(mechanism, std::move(equations));
       });
 }
 
-std::unique_ptr<LeavesFirstMatrix> leaves_first_matrix(const Mechanism& mechanism) {
+std::unique_ptr<SaddlePointFactor> saddle_point_factor(const Mechanism& mechanism) {
   return solved_by_bodies(mechanism) ? front_matrix(mechanism) : joint_matrix(mechanism);
 }
 
@@ -104,9 +104,9 @@ constexpr int poses = 3;
 constexpr int motions_tried = 4;  // per pose: rounding in a single one may be small by chance
 constexpr double way = 0.2;       // from pose to pose [rad, lengths of the scene]
 
-class LeavesFirstError {
+class EliminationError {
  public:
-  LeavesFirstError(const Mechanism& mechanism, Evaluation<double>& e, const LeavesFirst& solve)
+  EliminationError(const Mechanism& mechanism, Evaluation<double>& e, const LeavesFirst& solve)
       : mechanism_(mechanism),
         e_(e),
         solve_(solve),
@@ -238,9 +238,9 @@ class LeavesFirstError {
 
 }  // namespace
 
-double leaves_first_error(const Mechanism& mechanism, Evaluation<double>& e,
-                          const LeavesFirst& solve) {
-  return LeavesFirstError(mechanism, e, solve).least();
+double elimination_error(const Mechanism& mechanism, Evaluation<double>& e,
+                         const LeavesFirst& solve) {
+  return EliminationError(mechanism, e, solve).least();
 }
 
 }  // namespace momenta

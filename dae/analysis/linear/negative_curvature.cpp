@@ -1,5 +1,5 @@
 #include <momenta/dae/algebra/dense/decompositions.h>
-#include <momenta/dae/analysis/linear/downward_ways.h>
+#include <momenta/dae/analysis/linear/negative_curvature.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ VectorXd negative_of(const MatrixXd& T) {
 
 }  // namespace
 
-DownwardWays::DownwardWays(const Mechanism& mechanism, PoseMotion& poses)
+NegativeCurvature::NegativeCurvature(const Mechanism& mechanism, PoseMotion& poses)
     : mechanism_(mechanism),
       poses_(poses),
       dual_(mechanism.evaluation<Dual8>()),
@@ -51,7 +51,7 @@ DownwardWays::DownwardWays(const Mechanism& mechanism, PoseMotion& poses)
       r_(u_.size()),
       way_(VectorXd::Zero(mechanism.nq())) {}
 
-VectorXd DownwardWays::stiffness(double t, const VectorXd& y) {
+VectorXd NegativeCurvature::stiffness(double t, const VectorXd& y) {
   Evaluation<double>& e = poses_.evaluation();
   e.place(t, place_.data());
   e.coordinate_rates(place_.data(), y.data(), way_.data());
@@ -70,7 +70,7 @@ VectorXd DownwardWays::stiffness(double t, const VectorXd& y) {
 /// Sum of Ritz vectors of negative value, in the Krylov space of a random vector. `image` takes y
 /// and M y, and is self-adjoint in M where K is symmetric; an empty result ends the space.
 template <class Image>
-VectorXd DownwardWays::negative(int steps, bool symmetric, Image&& image) {
+VectorXd NegativeCurvature::negative(int steps, bool symmetric, Image&& image) {
   const int nv = mechanism_.nv();
   steps = std::min(steps, nv);
   std::mt19937 random(1);
@@ -103,8 +103,8 @@ VectorXd DownwardWays::negative(int steps, bool symmetric, Image&& image) {
   return sum.isZero(0) ? VectorXd() : VectorXd(Y.leftCols(count) * sum);
 }
 
-VectorXd DownwardWays::find(double t, const VectorXd& q, const VectorXd& lambda,
-                            LocalPencil& factored, bool symmetric) {
+VectorXd NegativeCurvature::find(double t, const VectorXd& q, const VectorXd& lambda,
+                                 LocalPencil& factored, bool symmetric) {
   constexpr int most_far = 60, most_near = 30;
   now_ = t;
   place_ = q;
