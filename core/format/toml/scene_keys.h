@@ -4,6 +4,7 @@
 // validate() checks what concerns several.
 
 #include <momenta/core/format/toml/keys.h>
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/scene.h>
 
 #include <span>
