@@ -45,7 +45,7 @@ class FormRunner {
              double cpu_s);
 
   const Mechanism& mechanism_;
-  const Start& start_;
+  Start start_;
   std::unique_ptr<Form> form_;
   std::string integrator_, when_stiff_;
   IntegrationOptions options_;

@@ -102,6 +102,216 @@ void judge_drives(const Mechanism& mechanism, const DriveReach& reach,
   if (!near.obstacle.empty()) stalled(near);
 }
 
+/// A run in phases. Each has a form and an integrator of its own, and ends where a rigid stop is
+/// met or let go, at an event, or at the end of the run: mostly there is one.
+class Phases {
+ public:
+  Phases(const Mechanism& mechanism, const Start& start, const IntegratedScene& scene,
+         const RunRequest& request, RunResult& result)
+      : mechanism_(mechanism),
+        start_(start),
+        scene_(scene),
+        request_(request),
+        result_(result),
+        rigid_(mechanism, result.settings.end_time - start.t),
+        stops_(rigid_.any() ? &rigid_ : nullptr),
+        faded_(static_cast<std::size_t>(scene.mechanism().m())) {}
+
+  /// Makes form and integrator. False: there is no state to begin at, which the result says.
+  bool begin();
+  /// Integrates from the start, or from the request's checkpoint, up to the end or a rigid stop.
+  void integrate();
+  /// Whether a rigid stop ended the last phase, and another follows.
+  bool goes_on() const { return monitor_->hit() && result_.status == "done" && !ended_; }
+  /// Integrates from behind the impact, or the release.
+  void integrate_on();
+  /// What the end of the run tells.
+  void finish();
+
+ private:
+  Observer observer();
+  void watch_faded_rows();
+  Checkpoint checkpoint(const std::function<void(Memory&)>& carry);
+  double spent() const { return thread_seconds() - cpu_start_; }
+
+  const Mechanism& mechanism_;
+  const Start& start_;
+  const IntegratedScene& scene_;
+  const RunRequest& request_;
+  RunResult& result_;
+  RigidStops rigid_;
+  RigidStops* stops_;  ///< null where there are none
+  std::optional<FormRunner> runner_;
+  std::optional<RunMonitor> monitor_;
+  DriveReach reach_;
+  std::vector<double> times_;  ///< of samples
+  double wall_start_ = 0, cpu_start_ = 0;
+  bool read_at_start_ = true;
+  OdeForm* ode_ = nullptr;   ///< the form of a run of one phase; null: of DAEs, or with stops
+  std::vector<long> faded_;  ///< by row: evaluations in which it faded
+  IntegrationResult run_;    ///< counters of all phases
+  long factorizations_ = 0;  ///< of earlier phases
+  double last_hit_ = 0;      ///< [s]
+  int at_once_ = 0;          ///< hits at the same moment
+  bool ended_ = false;
+};
+
+bool Phases::begin() {
+  Start begun = scene_.start();
+  try {
+    if (stops_) begun = stops_->begin(begun, result_);
+    runner_.emplace(stops_ ? stops_->acting() : scene_.mechanism(), begun, result_.settings,
+                    request_.max_cpu_seconds);
+  } catch (const NoStateAtStart& none) {
+    result_.status = "failed";
+    result_.reason = none.what();
+    result_.stopped_at = start_.t;
+    return false;
+  }
+  judge_rank(mechanism_, start_, result_);
+  reach_ = drive_reach(mechanism_, start_.t, start_.q, result_.settings.end_time);
+  const Checkpoint* from = request_.from;
+  if (from) result_ = from->so_far;
+  wall_start_ = wall_now() - (from ? result_.wall_s : 0);
+  cpu_start_ = thread_seconds() - (from ? result_.cpu_s : 0);
+  monitor_.emplace(mechanism_, scene_, runner_->form(), start_, request_, result_, stops_);
+  const auto y0 = runner_->form().initial(begun);
+  read_at_start_ = from || monitor_->sample(start_.t, y0.data(), nullptr);
+  ode_ = stops_ ? nullptr : dynamic_cast<OdeForm*>(&runner_->form());
+  watch_faded_rows();
+  times_ = output_times(result_.settings, request_.reference, reach_);
+  monitor_->expect_samples_at(times_);
+  return true;
+}
+
+void Phases::watch_faded_rows() {
+  const Mechanism& integrated = scene_.mechanism();
+  if (!ode_ || integrated.m() == 0) return;
+  const int rank = scene_.anew() ? rank_at(integrated, scene_.start()).rank : result_.rank;
+  ode_->watch_faded(&faded_, integrated.m() - rank);
+}
+
+Observer Phases::observer() {
+  Observer all{[this](double t, const double* y, const double* ydot) {
+                 return monitor_->sample(t, y, ydot);
+               },
+               [this](double t0, double t1, const Interpolant& between) {
+                 return monitor_->step(t0, t1, between);
+               },
+               [this](const Interpolant& exact) { monitor_->take_exact(exact); },
+               {}};
+  if (request_.between_steps)
+    all.before_step = [this](double t, const std::function<void(Memory&)>& carry) {
+      if (!monitor_->can_be_put_down()) return;
+      request_.between_steps([&] {
+        Checkpoint made = checkpoint(carry);
+        made.t = t;
+        return made;
+      });
+    };
+  return all;
+}
+
+Checkpoint Phases::checkpoint(const std::function<void(Memory&)>& carry) {
+  Memory memory;
+  monitor_->carry(memory);
+  carry(memory);
+  result_.cpu_s = spent();
+  result_.wall_s = wall_now() - wall_start_;
+  std::vector<std::vector<double>> rows;  // the caller keeps them
+  std::swap(rows, result_.trajectory.rows);
+  Checkpoint made{0, memory.numbers(), result_};
+  std::swap(rows, result_.trajectory.rows);
+  return made;
+}
+
+void Phases::integrate() {
+  last_hit_ = start_.t - 1;
+  Memory carried;
+  if (request_.from) {
+    carried = Memory(request_.from->memory);
+    monitor_->carry(carried);
+    runner_->go_on_from(carried, result_.cpu_s);
+  }
+  if (!times_.empty()) run_ = runner_->integrate(times_, observer());
+}
+
+void Phases::integrate_on() {
+  ended_ = true;
+  const RunMonitor::Hit hit = *monitor_->hit();
+  constexpr int most_at_once = 50;
+  at_once_ = hit.t > last_hit_ ? 0 : at_once_ + 1;
+  last_hit_ = hit.t;
+  if (at_once_ > most_at_once) {
+    run_.reason = "at t = " + std::to_string(hit.t) + " s a rigid stop is met over and over";
+    return;
+  }
+  const Counters so_far = run_.counters;
+  factorizations_ += runner_->factorizations();
+  run_.end_time = hit.t;
+  try {
+    double taken = 0;
+    const Start begun = stops_->meet(hit.t, hit.q, hit.u, hit.stops, result_, taken);
+    monitor_->take_energy(taken);
+    RunSettings settings = result_.settings;
+    const double left =
+        request_.max_cpu_seconds > 0 ? std::max(1e-3, request_.max_cpu_seconds - spent()) : 0;
+    runner_.emplace(stops_->acting(), begun, settings, left);
+  } catch (const std::runtime_error& none) {
+    run_.reason = none.what();
+    return;
+  }
+  // The first step is well below the pause: methods with memory begin at order 1.
+  runner_->begin_with_step(0.1 * stops_->pause());
+  monitor_->go_on(hit.t, runner_->form());
+  std::vector<double> left;
+  for (const double t : times_)
+    if (t > hit.t) left.push_back(t);
+  if (left.empty()) {
+    run_.done = true;
+    return;
+  }
+  run_ = runner_->integrate(left, observer());
+  run_.counters += so_far;
+  ended_ = false;
+}
+
+void Phases::finish() {
+  result_.cpu_s = spent();
+  result_.wall_s = wall_now() - wall_start_;
+  result_.status =
+      run_.done ? "done" : (run_.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
+  // A DAE that cannot be read at its start says why when it is started.
+  const bool by_method =
+      monitor_->trouble().empty() || (!read_at_start_ && runner_->form().is_dae());
+  result_.reason = run_.done ? "" : by_method ? run_.reason : monitor_->trouble();
+  result_.stopped_at = run_.end_time;
+  if (!run_.done && !monitor_->came_apart().empty()) {
+    result_.status = "came apart";
+    result_.reason = monitor_->came_apart();
+  }
+  if (!monitor_->ended_by().empty()) {
+    result_.status = "event";
+    result_.reason = monitor_->ended_by();
+    result_.stopped_at = monitor_->ended_at();
+  } else {
+    judge_drives(mechanism_, reach_, times_, monitor_->last_closed(), result_);
+  }
+  result_.stiff_from = run_.stiff_from;
+  result_.changed_at = runner_->changed_at();
+  result_.counters = run_.counters;
+  result_.jacobian = run_.jacobian;
+  result_.linear_solver = run_.linear_solver;
+  result_.counters.factorizations += factorizations_ + runner_->factorizations();
+  result_.partitions = runner_->form().partitions();
+  const std::vector<RowName>& rows = scene_.mechanism().rows();
+  for (std::size_t row = 0; row < faded_.size(); ++row)
+    if (faded_[row] > 0)
+      result_.faded_rows.push_back({rows[row].loop, rows[row].what, faded_[row]});
+  if (ode_) result_.weak_evaluations = ode_->weak_evaluations();
+  monitor_->finish();
+}
+
 }  // namespace
 
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request) {
@@ -115,144 +325,12 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   std::optional<IntegratedScene> chosen;
   const IntegratedScene& scene =
       request.integrated ? *request.integrated : chosen.emplace(mechanism, start);
-  const Mechanism& integrated = scene.mechanism();
   result.integrated = scene.in_words();
-  RigidStops rigid(mechanism, result.settings.end_time - start.t);
-  RigidStops* stops = rigid.any() ? &rigid : nullptr;
-  Start begun = scene.start();  // start of the phase
-  std::optional<FormRunner> made;
-  try {
-    if (stops) begun = stops->begin(begun, result);
-    made.emplace(stops ? stops->acting() : integrated, begun, result.settings,
-                 request.max_cpu_seconds);
-  } catch (const NoStateAtStart& none) {
-    result.status = "failed";
-    result.reason = none.what();
-    result.stopped_at = start.t;
-    return result;
-  }
-  judge_rank(mechanism, start, result);
-  const double end = result.settings.end_time;
-  const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
-  const Checkpoint* from = request.from;
-  if (from) result = from->so_far;
-  const double wall_start = wall_now() - (from ? result.wall_s : 0),
-               cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
-  RunMonitor monitor(mechanism, scene, made->form(), start, request, result, stops);
-  const auto y0 = made->form().initial(begun);
-  const bool read = from || monitor.sample(start.t, y0.data(), nullptr);
-  auto* ode = stops ? nullptr : dynamic_cast<OdeForm*>(&made->form());
-  std::vector<long> faded(static_cast<std::size_t>(integrated.m()));
-  if (ode && integrated.m() > 0) {
-    const int rank = scene.anew() ? rank_at(integrated, scene.start()).rank : result.rank;
-    ode->watch_faded(&faded, integrated.m() - rank);
-  }
-  const std::vector<double> times = output_times(result.settings, request.reference, reach);
-  monitor.expect_samples_at(times);
-  Observer observer{
-      [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
-      [&](double t0, double t1, const Interpolant& between) {
-        return monitor.step(t0, t1, between);
-      },
-      [&](const Interpolant& exact) { monitor.take_exact(exact); },
-      {}};
-  if (request.between_steps)
-    observer.before_step = [&](double t, const std::function<void(Memory&)>& carry) {
-      if (!monitor.can_be_put_down()) return;
-      request.between_steps([&] {
-        Memory memory;
-        monitor.carry(memory);
-        carry(memory);
-        result.cpu_s = thread_seconds() - cpu_start;
-        result.wall_s = wall_now() - wall_start;
-        std::vector<std::vector<double>> rows;
-        std::swap(rows, result.trajectory.rows);
-        Checkpoint made_here{t, memory.numbers(), result};
-        std::swap(rows, result.trajectory.rows);
-        return made_here;
-      });
-    };
-  Memory carried;
-  if (from) {
-    carried = Memory(from->memory);
-    monitor.carry(carried);
-    made->go_on_from(carried, result.cpu_s);
-  }
-  IntegrationResult run;
-  if (!times.empty()) run = made->integrate(times, observer);
-  long factorizations = 0;
-  double last_hit = start.t - 1;
-  int at_once = 0;
-  while (monitor.hit() && result.status == "done") {
-    const RunMonitor::Hit hit = *monitor.hit();
-    constexpr int most_at_once = 50;
-    at_once = hit.t > last_hit ? 0 : at_once + 1;
-    last_hit = hit.t;
-    if (at_once > most_at_once) {
-      run.reason = "at t = " + std::to_string(hit.t) + " s a rigid stop is met over and over";
-      break;
-    }
-    const Counters so_far = run.counters;
-    factorizations += made->factorizations();
-    run.end_time = hit.t;
-    try {
-      double taken = 0;
-      begun = stops->meet(hit.t, hit.q, hit.u, hit.stops, result, taken);
-      monitor.take_energy(taken);
-      RunSettings settings = result.settings;
-      const double spent = thread_seconds() - cpu_start;
-      made.emplace(
-          stops->acting(), begun, settings,
-          request.max_cpu_seconds > 0 ? std::max(1e-3, request.max_cpu_seconds - spent) : 0);
-    } catch (const std::runtime_error& none) {
-      run.reason = none.what();
-      break;
-    }
-    // The first step is well below the pause: methods with memory begin at order 1.
-    made->begin_with_step(0.1 * stops->pause());
-    monitor.go_on(hit.t, made->form());
-    std::vector<double> left;
-    for (const double t : times)
-      if (t > hit.t) left.push_back(t);
-    if (left.empty()) {
-      run.done = true;
-      break;
-    }
-    run = made->integrate(left, observer);
-    run.counters += so_far;
-  }
-  result.cpu_s = thread_seconds() - cpu_start;
-  result.wall_s = wall_now() - wall_start;
-  result.status =
-      run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
-  // A DAE that cannot be read at its start says why when it is started.
-  const bool by_method = monitor.trouble().empty() || (!read && made->form().is_dae());
-  result.reason = run.done ? "" : by_method ? run.reason : monitor.trouble();
-  result.stopped_at = run.end_time;
-  if (!run.done && !monitor.came_apart().empty()) {
-    result.status = "came apart";
-    result.reason = monitor.came_apart();
-  }
-  if (!monitor.ended_by().empty()) {
-    result.status = "event";
-    result.reason = monitor.ended_by();
-    result.stopped_at = monitor.ended_at();
-  } else {
-    judge_drives(mechanism, reach, times, monitor.last_closed(), result);
-  }
-  result.stiff_from = run.stiff_from;
-  result.changed_at = made->changed_at();
-  result.counters = run.counters;
-  result.jacobian = run.jacobian;
-  result.linear_solver = run.linear_solver;
-  result.counters.factorizations += factorizations + made->factorizations();
-  result.partitions = made->form().partitions();
-  for (std::size_t row = 0; row < faded.size(); ++row)
-    if (faded[row] > 0)
-      result.faded_rows.push_back(
-          {integrated.rows()[row].loop, integrated.rows()[row].what, faded[row]});
-  if (ode) result.weak_evaluations = ode->weak_evaluations();
-  monitor.finish();
+  Phases run(mechanism, start, scene, request, result);
+  if (!run.begin()) return result;
+  run.integrate();
+  while (run.goes_on()) run.integrate_on();
+  run.finish();
   return result;
 }
 
