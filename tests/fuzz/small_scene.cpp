@@ -1,4 +1,5 @@
-// Any bytes as a small mechanism: checked, assembled and run for 0.01 s, or refused in one sentence.
+// Any bytes as a small mechanism: checked, assembled and run for 0.01 s, or refused in one
+// sentence.
 
 #include "equations/small_scenes.h"
 
