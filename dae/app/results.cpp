@@ -7,6 +7,7 @@
 #include <momenta/dae/output/mechanism_view.h>
 #include <momenta/dae/output/page.h>
 #include <momenta/dae/output/picture_data.h>
+#include <momenta/dae/output/run_report.h>
 #include <momenta/dae/output/table.h>
 #include <momenta/dae/run/motion.h>
 #include <momenta/dae/study/environment.h>
@@ -45,14 +46,6 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.environment = environment();
   if (interrupted() && !study.runs.empty() && study.runs.back().status != "done")
     study.runs.back().reason = "interrupted";
-}
-
-void print_integrated(const StudyResult& study) {
-  if (!study.runs.empty() && !study.runs.front().integrated.empty())
-    std::printf(
-        "\nIntegrated in place of the scene as written, for less work: %s (--cut scene: as "
-        "written)\n",
-        study.runs.front().integrated.c_str());
 }
 
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
@@ -194,7 +187,7 @@ int publish(const StudyResult& study, const std::string& words, const Options& o
     std::fputs(json.c_str(), stdout);
   } else if (!o.quiet) {
     std::printf("%s\n%s", drift_table(study).c_str(), words.c_str());
-    print_integrated(study);
+    std::fputs(integrated_in_words(study).c_str(), stdout);
   }
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());

@@ -26,9 +26,6 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
 void show(StudyResult& study, const Options& o, const Mechanism& mechanism,
           const Assembly& assembly);
 
-/// The scene that was integrated, if it differs from the one written.
-void print_integrated(const StudyResult& study);
-
 /// Intervals of one film of `runs`; 0 without --out or drawing.
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs);
 

@@ -1,11 +1,8 @@
-#include <momenta/core/text/number_text.h>
 #include <momenta/dae/integrator/stopping.h>
-#include <momenta/dae/output/advice.h>
-#include <momenta/dae/output/conclusion.h>
 #include <momenta/dae/output/csv.h>
 #include <momenta/dae/output/page.h>
 #include <momenta/dae/output/part_file.h>
-#include <momenta/dae/output/table.h>
+#include <momenta/dae/output/run_report.h>
 #include <momenta/dae/run/measure/rank.h>
 #include <momenta/dae/run/passed_limits.h>
 #include <momenta/dae/run/run_form.h>
@@ -16,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <stdexcept>
 
 #include "checkpoint_file.h"
@@ -30,99 +26,6 @@ namespace momenta::program {
 namespace {
 
 constexpr int most_drawn = 4000;  // samples in a page
-
-void print_singular_crossings(const RunResult& result) {
-  constexpr std::size_t most = 12;
-  if (result.singular_crossings.empty()) return;
-  std::string times;
-  for (std::size_t i = 0; i < result.singular_crossings.size() && i < most; ++i)
-    times += (i == 0 ? "" : ", ") + compact(result.singular_crossings[i].t, 4);
-  std::printf("\nClose to singular poses at t = %s%s s, least pivot %s\n", times.c_str(),
-              result.singular_crossings.size() > most ? ", …" : "",
-              scientific(result.least_pivot, 1).c_str());
-  for (const RunResult::SingularCrossing& crossing : result.singular_crossings)
-    if (crossing.ambiguous) {
-      std::printf("Ambiguous: %s\n", ambiguous_from(crossing.t).c_str());
-      break;
-    }
-}
-
-/// Rank at the start, and singular poses of the run.
-void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& result) {
-  if (a.rank < mechanism.m()) {
-    constexpr std::size_t most = 6;
-    std::string rows;
-    for (std::size_t i = 0; i < a.dependent_rows.size() && i < most; ++i)
-      rows += (i == 0 ? "" : "; ") + row_in_words(mechanism, a.dependent_rows[i]);
-    std::printf("\nLoop equations: rank %d of %d at the start, redundant: %s%s\n", a.rank,
-                mechanism.m(), rows.c_str(), a.dependent_rows.size() > most ? "; …" : "");
-  }
-  if (!a.residue.empty()) std::printf("\n%s\n", a.residue.c_str());
-  if (result.weak_evaluations > 0)
-    std::printf(
-        "\nNear a singular pose, or with equations that are nearly redundant, in %ld of %ld "
-        "right-hand sides: more loop equations faded there than are redundant at the start "
-        "(faded_rows)\n",
-        result.weak_evaluations, result.counters.evaluations);
-}
-
-/// Events with number and times.
-void print_events(const Scene& scene, const RunResult& result) {
-  constexpr std::size_t most = 8;
-  for (std::size_t i = 0; i < scene.events.size(); ++i) {
-    const std::string name = name_of(scene.events[i], i);
-    std::string times;
-    std::size_t count = 0;
-    for (const FoundEvent& e : result.events) {
-      if (e.name != name) continue;
-      if (count < most)
-        times += (count == 0 ? "" : ", ") + compact(e.t, 8) + (e.up ? " up" : " down");
-      ++count;
-    }
-    if (i == 0) std::printf("\n");
-    if (count == 0)
-      std::printf("Event '%s': not met\n", name.c_str());
-    else
-      std::printf("Event '%s': %zu, at t [s] = %s%s\n", name.c_str(), count, times.c_str(),
-                  count > most ? ", …" : "");
-  }
-  if (result.status == "event") std::printf("%s\n", result.reason.c_str());
-}
-
-/// Impacts of rigid stops, and times at which they held their coordinates.
-void print_stops(const RunResult& result) {
-  std::map<std::pair<std::string, double>, std::vector<const StopContact*>> by_stop;
-  for (const StopContact& s : result.stops) by_stop[{s.joint, s.limit}].push_back(&s);
-  if (!by_stop.empty()) std::printf("\n");
-  for (const auto& [stop, all] : by_stop) {
-    std::size_t impacts = 0;
-    std::string first, held;
-    for (const StopContact* s : all) {
-      if (s->what == "impact" && impacts++ == 0) first = compact(s->t, 8);
-      if (s->what == "held") held += (held.empty() ? "" : ", ") + compact(s->t, 8) + " s";
-      if (s->what == "released") held += " to " + compact(s->t, 8) + " s";
-    }
-    std::printf("Stop of joint '%s' at %s: %zu impacts%s%s\n", stop.first.c_str(),
-                compact(stop.second, 6).c_str(), impacts,
-                first.empty() ? "" : (", the first at t = " + first + " s").c_str(),
-                held.empty() ? "" : ("; held from t = " + held).c_str());
-  }
-}
-
-/// "C.lambda1, C.lambda2": columns that are not unique, and at how many samples.
-void print_undetermined(const RunResult& result) {
-  std::map<long, std::string> by_samples;
-  for (const RunResult::Undetermined& u : result.undetermined) {
-    std::string& names = by_samples[u.samples];
-    names += (names.empty() ? "" : ", ") + u.column.substr(0, u.column.rfind(" ["));
-  }
-  for (const auto& [samples, names] : by_samples)
-    std::printf("\nNot unique at %s: %s\n",
-                samples == static_cast<long>(result.series.t.size())
-                    ? "any sample"
-                    : (std::to_string(samples) + " samples").c_str(),
-                names.c_str());
-}
 
 /// The files of a run: the trajectory, written during the run, and a summary with reserved room.
 class RunFiles {
@@ -261,18 +164,7 @@ int run(const Options& o) {
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
-    if (const std::string first = reservations(study); !first.empty())
-      std::printf("%s\n\n", first.c_str());
-    std::fputs(drift_table(study).c_str(), stdout);
-    print_integrated(study);
-    print_rank(*mechanism, a, result);
-    print_singular_crossings(result);
-    print_undetermined(result);
-    print_events(mechanism->scene(), result);
-    print_stops(result);
-    if (const std::string stiff = stiffness_in_words(result); !stiff.empty())
-      std::printf("\n%s\n", stiff.c_str());
-    if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
+    std::fputs(run_report(study, *mechanism, a).c_str(), stdout);
   }
   for (const std::string& sentence :
        o.quiet ? std::vector<std::string>{} : in_words(result.passed_limits))

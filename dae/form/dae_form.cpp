@@ -64,7 +64,7 @@ void DaeForm::find_redundancy(const Start& start) {
   if (!mechanism_.solver().leaves_first()) {  // the loops have no pivots of their own
     plain_.e->place(start.t, start.q.data());
     if (loop_rank(mechanism_, *plain_.e, Judged::dependence).rank == layout_.m) return;
-  } else if (mechanism_.solver().dense() || mechanism_.solver().kkt() != KktChoice::sweeps) {
+  } else if (!mechanism_.solver().by_sweeps()) {
     const auto kkt = make_dense_kkt(mechanism_);
     if (!kkt->factor(*plain_.e, start.t, start.q.data(), fade_evaluation) || kkt->faded() == 0)
       return;
@@ -341,8 +341,7 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
   // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last
   // Newton residual.
   auto& e = *plain_.e;
-  if (layout_.m > 0 && mechanism_.solver().kkt() == KktChoice::sweeps &&
-      !mechanism_.solver().dense()) {
+  if (layout_.m > 0 && mechanism_.solver().by_sweeps()) {
     if (!reader_) reader_ = make_loop_solver(mechanism_, e);
     reader_->stabilise(beta());
     Eigen::VectorXd unused(layout_.m);

@@ -28,6 +28,8 @@ class SolverChoice {
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix is dense, where one is needed.
   bool dense() const { return dense_; }
+  /// Whether the sweeps solve it, and no matrix is assembled.
+  bool by_sweeps() const { return kkt_ == KktChoice::sweeps && !dense_; }
   /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
   /// that point, and a solution so made is right to most_leaves_first_error.
   bool leaves_first() const { return light_.empty(); }

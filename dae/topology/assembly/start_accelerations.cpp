@@ -56,7 +56,7 @@ void solve_for_accelerations(const Mechanism& mechanism, Evaluation<double>& e, 
       no_inertia(e.singular_joint());
     return;
   }
-  if (mechanism.solver().kkt() == KktChoice::sweeps && !mechanism.solver().dense()) {
+  if (mechanism.solver().by_sweeps()) {
     const auto solver = make_loop_solver(mechanism, e);
     solver->push(tau);
     if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
