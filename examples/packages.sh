@@ -29,7 +29,12 @@ install_missing() {
     fi
     as_root=(sudo -n)
   fi
-  export DEBIAN_FRONTEND=noninteractive
-  "${as_root[@]}" apt-get update -qq </dev/null
-  "${as_root[@]}" apt-get install -qq --yes --no-install-recommends "${missing[@]}" </dev/null
+  # A fresh system's own updates may hold the locks of apt. It waits itself for all but the one of its lists.
+  export DEBIAN_FRONTEND=noninteractive LC_ALL=C
+  local apt=("${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=600) said left=120
+  until said=$("${apt[@]}" update 2>&1 </dev/null); do
+    [[ $said == *"Could not get lock"* ]] && ((left-- > 0)) || { echo "$said" >&2; exit 1; }
+    sleep 5
+  done
+  "${apt[@]}" install --yes --no-install-recommends "${missing[@]}" </dev/null
 }
