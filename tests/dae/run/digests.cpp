@@ -114,7 +114,7 @@ TEST_F(Digests, OfEveryLevelAreThoseOnRecord) {
   const std::string compiler = "g++ " + std::to_string(__GNUC__);
 #endif
   const nlohmann::json record =
-      nlohmann::json::parse(std::ifstream(source / "tests" / "golden" / "digests.json"));
+      nlohmann::json::parse(std::ifstream(source / "tests/dae/run/digests.json"));
   if (record["libc"] != gnu_get_libc_version() || !record["levels"].contains(compiler))
     GTEST_SKIP() << "digests are those of glibc " << record["libc"] << "; found "
                  << gnu_get_libc_version() << ", " << compiler;
