@@ -1,4 +1,5 @@
 #include <momenta/core/format/toml/number_at.h>
+#include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/text/quoting.h>
 #include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/kkt/loop_units.h>
@@ -11,7 +12,7 @@ namespace momenta {
 namespace {
 
 RunVariable of_scene(const std::string& place, double value) {
-  return {RunVariable::Kind::parameter, place, "", -1, value, value != 0 ? std::abs(value) : 1};
+  return {RunVariable::Kind::parameter, place, "", -1, value, std::abs(value)};
 }
 
 /// Whether a name begins like the place of a number: "body.crank.mass".
@@ -28,6 +29,15 @@ Scene SceneText::scene(const std::vector<Setting>& more) const {
   std::vector<Setting> all = fixed;
   all.insert(all.end(), more.begin(), more.end());
   return parse_scene(text, file, all);
+}
+
+double step_size(double value, const std::function<bool(double)>& exists) {
+  constexpr double next_to_nothing = 1e-12, widest = 3 * sixth_order::part;
+  const double magnitude = std::abs(value);
+  if (magnitude >= next_to_nothing) return magnitude;
+  for (double size = 1; size > next_to_nothing; size /= 8)
+    if (exists(value + widest * size) && exists(value - widest * size)) return size;
+  return magnitude > 0 ? magnitude : 1;
 }
 
 std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& mechanism,
@@ -78,6 +88,16 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
     }
     chosen.push_back(*found);
   }
+  for (RunVariable& v : chosen)
+    if (v.kind == Kind::parameter)
+      v.size = step_size(v.value, [&](double value) {
+        try {
+          scene.scene({{v.name, value}});
+        } catch (const SceneError&) {
+          return false;
+        }
+        return true;
+      });
   if (chosen.empty())
     throw std::invalid_argument(
         "no numbers are named that the gradient is by; expected parameters or start values");

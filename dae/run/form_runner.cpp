@@ -4,6 +4,7 @@
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/run/event/scene_inputs.h>
 #include <momenta/dae/run/form_runner.h>
+#include <momenta/dae/run/run_form.h>
 #include <momenta/dae/run/run_settings.h>
 
 #include <algorithm>
@@ -120,9 +121,7 @@ void FormRunner::go_on(IntegrationResult& run, const std::vector<double>& times,
                [&](double t) { return t > run.end_time * (1 + 1e-14); });
   IntegrationOptions options = options_;
   options.carried = nullptr;
-  options.spent_cpu_seconds = 0;
-  if (options.max_cpu_seconds > 0)
-    options.max_cpu_seconds = std::max(1e-3, options.max_cpu_seconds - cpu_s);
+  options.spent_cpu_seconds = cpu_s;
   const std::vector<double> y = std::move(run.y);
   IntegrationResult rest =
       momenta::integrate(when_stiff_, *form_->ode(), changed_at_, y, left, options, observer);

@@ -30,10 +30,12 @@ class FormRunner {
   void begin_with_step(double first_step) { options_.initial_step = first_step; }
   IntegrationResult integrate(const std::vector<double>& times, const Observer& observer);
   double changed_at() const { return changed_at_; }
+  /// CPU time [s] that counts towards the limit beside that of the next integration.
+  void count_spent(double seconds) { options_.spent_cpu_seconds = seconds; }
   /// Lets the next integration continue another one.
   void go_on_from(const Memory& carried, double spent_cpu_seconds) {
     options_.carried = &carried;
-    options_.spent_cpu_seconds = spent_cpu_seconds;
+    count_spent(spent_cpu_seconds);
   }
 
  private:

@@ -126,21 +126,25 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
   std::set<std::size_t> soft;  // stops taken with e = 0
   for (const std::size_t i : hit)
     if (stops_[i].restitution == 0) soft.insert(i);
-  // A stop met again at once was not left: the flight is below what the method resolves.
+  // A stop met again at once, without a way that tells, was not left: the flight is below what the
+  // method resolves.
   std::set<std::size_t> stuck;
   for (const std::size_t i : hit)
-    if (const auto met = last_.find(i); met != last_.end() && t - met->second < shortest * span_)
-      soft.insert(i), stuck.insert(i);
+    if (const auto met = last_.find(i); met != last_.end()) {
+      const double flight = t - met->second, way = flight * std::abs(before[stops_[i].u]);
+      if (flight < shortest * span_ && way < 1e-9 * (1 + std::abs(stops_[i].limit)))
+        soft.insert(i), stuck.insert(i);
+    }
   for (const std::size_t i : hit) last_[i] = t;
-  std::set<std::size_t> left;  // held stops pushed off by the impact
+  std::set<std::size_t> through = held_;  // hold at the impact, whatever they do behind it
+  std::set<std::size_t> left;             // held stops pushed off by the impact
   for (std::size_t trial = 0; trial <= 4 * stops_.size(); ++trial) {
     std::vector<StopAtImpact> at;
     for (const std::size_t i : hit)
       at.push_back({stops_[i].u, stops_[i].side, soft.contains(i) ? 0 : stops_[i].restitution,
                     false, stuck.contains(i)});
-    for (const std::size_t i : held_)
-      if (std::find(hit.begin(), hit.end(), i) == hit.end())
-        at.push_back({stops_[i].u, stops_[i].side, 0, true, stuck.contains(i)});
+    for (const std::size_t i : through)
+      at.push_back({stops_[i].u, stops_[i].side, 0, true, stuck.contains(i)});
     Eigen::VectorXd u = before;
     taken = hit.empty() ? 0 : impact_.jump(t, q, u, at);
     // A stop pushed off by an impact ceases to hold.
@@ -148,8 +152,9 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
     const auto is_off = [&](std::size_t i) {
       return !stuck.contains(i) && stops_[i].side * u[stops_[i].u] < -still;
     };
-    std::copy_if(held_.begin(), held_.end(), std::inserter(left, left.end()), is_off);
-    if (std::erase_if(held_, is_off) > 0) continue;
+    std::copy_if(through.begin(), through.end(), std::inserter(left, left.end()), is_off);
+    std::erase_if(held_, is_off);
+    if (std::erase_if(through, is_off) > 0) continue;
     std::set<std::size_t> holding = held_;
     Acting& acting = with(holding);
     const Mechanism& now = *acting.mechanism;
@@ -177,9 +182,9 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
       const double off = -stop.side * u[stop.u], pressed = stop.side * start.udot[stop.u];
       if (holding.contains(i) || !(pressed > 0) || is_flight(i, off, pressed)) continue;
       again |= held_.insert(i).second;
-      stuck.insert(i);
+      through.insert(i), stuck.insert(i);
     }
-    for (const std::size_t i : holding)
+    for (const std::size_t i : holding)  // let go behind the impact
       if (push(now, i, start.lambda) < 0) again |= held_.erase(i) > 0, left.erase(i);
     if (again) continue;
     for (std::size_t k = 0; k < hit.size(); ++k) {

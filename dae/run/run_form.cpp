@@ -246,6 +246,12 @@ void Phases::integrate_on() {
     run_.reason = "at t = " + std::to_string(hit.t) + " s a rigid stop is met over and over";
     return;
   }
+  // Phases may be too short to look at the clock.
+  if (const double most = request_.max_cpu_seconds; most > 0 && spent() > most) {
+    run_.reason = time_limit_sentence(result_.settings.integrator, most, hit.t);
+    run_.end_time = hit.t;
+    return;
+  }
   const Counters so_far = run_.counters;
   factorizations_ += runner_->factorizations();
   run_.end_time = hit.t;
@@ -254,9 +260,8 @@ void Phases::integrate_on() {
     const Start begun = stops_->meet(hit.t, hit.q, hit.u, hit.stops, result_, taken);
     monitor_->take_energy(taken);
     RunSettings settings = result_.settings;
-    const double left =
-        request_.max_cpu_seconds > 0 ? std::max(1e-3, request_.max_cpu_seconds - spent()) : 0;
-    runner_.emplace(stops_->acting(), begun, settings, left);
+    runner_.emplace(stops_->acting(), begun, settings, request_.max_cpu_seconds);
+    runner_->count_spent(spent());
   } catch (const std::runtime_error& none) {
     run_.reason = none.what();
     return;

@@ -92,6 +92,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
   result.shapes = displacement_columns(mechanism);
   Equilibrium& at = result.equilibrium;
   if (request.search == Search::steady) {
+    expect_between_stops(mechanism, start.q);
     result.spectrum = steady_spectrum(mechanism, start, result.steady.emplace());
     at.t = start.t;
     at.q = start.q;
@@ -116,6 +117,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
     // The mode grows, but not downhill: a negative damper, say.
     if ((at.q - saddle).cwiseAbs().maxCoeff() < 1e-3 * aside) saddles = most_saddles - 1;
   }
+  expect_between_stops(mechanism, at.q);
   if (start.q.size() > 0) at.moved = (at.q - start.q).cwiseAbs().maxCoeff();
   // Rates of drives show in what prescribed motion alone moves.
   if (mechanism.plan().drives && mechanism.nv() > 0) {

@@ -1,7 +1,10 @@
 #include <momenta/core/scene/joint_kind.h>
+#include <momenta/core/text/number_text.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/analysis/linear/operating_point.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -24,7 +27,26 @@ Place place_of(const Tree::Body& b) {
 
 }  // namespace
 
+void expect_between_stops(const Mechanism& mechanism, const Eigen::VectorXd& q) {
+  const Tree& tree = mechanism.tree();
+  for (const JointSpec& joint : mechanism.scene().joints) {
+    if (!joint.restitution) continue;
+    const Tree::Body& b = tree.bodies[static_cast<std::size_t>(tree.carried_by(joint.name))];
+    if (b.nv == 0) continue;
+    const auto [low, high] = *joint.limits;
+    const double limit = q[b.q] - low < high - q[b.q] ? low : high,
+                 rounding = 1e-9 * (1 + std::abs(limit));
+    if (q[b.q] > low + rounding && q[b.q] < high - rounding) continue;
+    throw SceneError(mechanism.scene().where(joint.at) + "joint " + reading::in_quotes(joint.name) +
+                     " is at " + compact(q[b.q], 6) + ", at or beyond its rigid stop at " +
+                     compact(limit, 6) +
+                     ", which small motions would meet; expected a state between rigid stops, or "
+                     "soft ones (stop_stiffness)");
+  }
+}
+
 OperatingPoint operating_point(const Mechanism& mechanism, const Start& at) {
+  expect_between_stops(mechanism, at.q);
   OperatingPoint point;
   Scene scene = mechanism.scene();
   std::vector<DriveSpec> kept;

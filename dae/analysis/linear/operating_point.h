@@ -30,6 +30,10 @@ struct OperatingPoint {
   Eigen::VectorXd driven_accelerations;    ///< f̈, in the order of `driven`
 };
 
+/// @throws SceneError at or beyond a rigid stop (JointSpec::restitution): motions there, however
+/// small, meet it. O(joints)
+void expect_between_stops(const Mechanism& mechanism, const Eigen::VectorXd& q);
+
 /// The point at a consistent state. @throws SceneError. O(bodies)
 OperatingPoint operating_point(const Mechanism& mechanism, const Start& at);
 

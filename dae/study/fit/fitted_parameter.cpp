@@ -1,4 +1,5 @@
 #include <momenta/core/text/quoting.h>
+#include <momenta/dae/gradient/run_variable.h>
 #include <momenta/dae/study/fit/fitted_parameter.h>
 
 #include <charconv>
@@ -49,7 +50,20 @@ VectorXd sizes_of(const ParametricMechanism& family,
   VectorXd sizes = family.own().cwiseAbs();
   for (Index j = 0; j < sizes.size(); ++j) {
     const auto& range = parameters[static_cast<std::size_t>(j)].range;
-    if (sizes[j] == 0) sizes[j] = range ? (*range)[1] - (*range)[0] : 1;
+    const double wide = range ? (*range)[1] - (*range)[0] : 0;
+    if (range && sizes[j] < 1e-12 * wide)
+      sizes[j] = wide;
+    else if (!range)
+      sizes[j] = step_size(family.own()[j], [&](double value) {
+        VectorXd theta = family.own();
+        theta[j] = value;
+        try {
+          family.scene(theta);
+        } catch (const SceneError&) {
+          return false;
+        }
+        return true;
+      });
   }
   return sizes;
 }

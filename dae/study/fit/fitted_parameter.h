@@ -25,7 +25,7 @@ struct FittedParameter {
 std::array<double, 2> range_from_text(const std::string& option, const std::string& text,
                                       const std::string& like);
 
-/// Sizes that scale steps of differences: |θ|; for 0 the width of the range, else 1.
+/// Sizes that scale steps of differences: |θ|; next to 0 the width of the range, else step_size().
 Eigen::VectorXd sizes_of(const ParametricMechanism& family,
                          const std::vector<FittedParameter>& parameters);
 

@@ -32,6 +32,8 @@ class IdentificationSearch {
 
   Identification run() {
     VectorXd r;
+    error_.limit().ask(
+        [&] { return !request_.progress || request_.progress(0, WantedErrors::none); });
     if (error_.evaluate(result_.own, r, nullptr)) {
       result_.cost_before = 0.5 * r.squaredNorm();
       result_.before = error_.reached();
@@ -61,15 +63,20 @@ class IdentificationSearch {
     const double least_so_far =
         has_best(result_) ? result_.starts[result_.best].cost : WantedErrors::none;
     VectorXd x = from;
+    const auto going_on = [&] {
+      result_.stopped |= request_.progress && !request_.progress(number, least_so_far);
+      return !result_.stopped;
+    };
+    error_.limit().ask(going_on);
     const LeastSquaresEnd end = least_squares_search(
         [&](const VectorXd& at, VectorXd& r, MatrixXd* jacobian) {
-          result_.stopped |= request_.progress && !request_.progress(number, least_so_far);
-          if (result_.stopped) return false;
+          if (!going_on()) return false;
           const bool there_is = error_.evaluate(at, r, jacobian);
           if (!there_is) refused = error_.why();
           return there_is;
         },
         least_, most_, sizes_, request_.most_iterations, x);
+    error_.limit().ask({});
     start.iterations = end.iterations;
     if (!end.began) {
       start.why = result_.stopped ? "it was stopped" : refused;

@@ -134,6 +134,7 @@ class LeastSearch {
       result_.stopped |= request_.progress && !request_.progress(number, least_so_far);
       return !result_.stopped;
     };
+    if (run_) run_->limit().ask(going);
     MotionValues first;
     if (!motion(from, false, first)) {
       start.why = refused_;
@@ -153,6 +154,7 @@ class LeastSearch {
     p.going = going;
     const ConstrainedEnd end =
         constrained_search(p, least, most, sizes, request_.most_iterations, x);
+    if (run_) run_->limit().ask({});
     start.iterations = end.iterations;
     MotionValues last;
     if (!end.began || !motion(x.head(n), false, last)) {

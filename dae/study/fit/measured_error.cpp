@@ -42,8 +42,10 @@ bool MeasuredError::evaluate(const VectorXd& theta, VectorXd& r, MatrixXd* jacob
       for (const Column& quantity : measured_.quantities) request.outputs.push_back(quantity.name);
       request.times = measured_.times;
       request.settings = settings_;
+      request.progress = limit_.next();
       ++runs_;
       const GradientResult run = gradient(scene, request);
+      limit_.arrived();
       for (const std::string& remark : run.remarks)
         if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end())
           remarks_.push_back(remark);

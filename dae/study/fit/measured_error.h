@@ -12,6 +12,7 @@
 #include <momenta/dae/gradient/gradient.h>
 #include <momenta/dae/study/fit/measured_motion.h>
 #include <momenta/dae/study/fit/parametric_mechanism.h>
+#include <momenta/dae/study/fit/trial_limit.h>
 
 #include <string>
 #include <vector>
@@ -34,7 +35,8 @@ class MeasuredError {
   const std::string& why() const { return why_; }            ///< a sentence without full stop
   /// Remarks of the gradients, each once.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  long runs() const { return runs_; }  ///< runs so far
+  long runs() const { return runs_; }     ///< runs so far
+  TrialLimit& limit() { return limit_; }  ///< of runs to come
 
   /// w_k of each quantity.
   const Eigen::VectorXd& weights() const { return weights_; }
@@ -50,6 +52,7 @@ class MeasuredError {
   std::vector<std::string> remarks_;
   std::string why_;
   long runs_ = 0;
+  TrialLimit limit_;
 };
 
 }  // namespace momenta

@@ -176,7 +176,9 @@ bool RunParts::at(const VectorXd& theta, bool derivatives, MotionValues& values)
       request.integral = part.kind != MotionPart::Kind::last;
       request.by = family_.names();
       request.settings = settings_;
+      request.progress = limit_.next();
       const GradientResult result = gradient(scene, request);
+      limit_.arrived();
       const double over = part.kind == MotionPart::Kind::mean ? result.end_time : 1;
       values.parts.push_back(VectorXd::Constant(1, result.value / over));
       values.parts_by.push_back(result.gradient.transpose() / over);

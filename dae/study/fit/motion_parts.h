@@ -5,6 +5,7 @@
 #include <momenta/dae/gradient/gradient.h>
 #include <momenta/dae/study/fit/motion_formula.h>
 #include <momenta/dae/study/fit/parametric_mechanism.h>
+#include <momenta/dae/study/fit/trial_limit.h>
 
 #include <string>
 #include <vector>
@@ -95,8 +96,10 @@ class RunParts final : public MotionParts {
 
   /// Remarks of the gradients, each once.
   const std::vector<std::string>& remarks() const { return remarks_; }
+  TrialLimit& limit() { return limit_; }  ///< of runs to come
 
  private:
+  TrialLimit limit_;
   SceneText scene_;
   RunSettings settings_;
   std::vector<MotionPart> parts_;

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/drive.h>
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/solver_choice.h>
@@ -42,6 +43,23 @@ namespace {
       mechanism.scene().where({}) +
       (mechanism.scene().lagrangian ? "" : "the mechanism cannot move at its start: ") +
       momenta::no_inertia(mechanism, rate, s.t, s.q.data()));
+}
+
+/// Names the drive whose second derivative has no value, if there is one.
+[[noreturn]] void refuse_without_value(const Scene& scene, double t) {
+  char at[48];
+  std::snprintf(at, sizeof at, "at t = %.6g s", t);
+  for (const DriveSpec& drive : scene.drives) {
+    double f = 0, rate = 0, second = 0;
+    MotionLaw(drive).evaluate(t, f, rate, second);
+    if (!std::isfinite(second))
+      throw SceneError(scene.where(drive.at) + "the drive of " +
+                       (drive.loop.empty() ? "joint '" + drive.joint : "loop '" + drive.loop) +
+                       "' has no finite second derivative " + at +
+                       "; expected a law with one, as accelerations and forces follow from it");
+  }
+  throw SceneError(scene.where({}) + "the accelerations have no finite value " + at +
+                   "; expected forces and laws that have one there");
 }
 
 /// Fills udot and lambda; `tau` (nv): forces of friction, or null.
@@ -109,6 +127,7 @@ void start_accelerations(const Mechanism& mechanism, Evaluation<double>& e, Star
   }
   solve_for_accelerations(mechanism, e, s, friction ? friction->forces() : nullptr);
   e.push(nullptr);
+  if (!s.udot.allFinite() || !s.lambda.allFinite()) refuse_without_value(mechanism.scene(), s.t);
 }
 
 }  // namespace momenta

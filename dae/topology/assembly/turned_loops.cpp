@@ -155,6 +155,10 @@ class LeadingBack {
       const double angle = longer ? turned.angle - 2 * std::numbers::pi : turned.angle;
       const Eigen::Vector3d& axis = way >= 4 ? turned.other : turned.axis;
       LoopSpec& loop = scene.loops[turned.loop];
+      if (loop.kind == LoopKind::rack) {
+        loop.offset += s * angle;
+        continue;
+      }
       const Eigen::Quaterniond whole = loop.rotation;
       loop.rotation = whole * Eigen::Quaterniond(Eigen::AngleAxisd(s * angle, axis));
       loop.origin_parent +=
@@ -193,8 +197,9 @@ std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
     const LoopSpec& spec = scene.loops[i];
     if (!ties_bodies(spec)) continue;
     const LoopChoice choice = choose_rows(spec, drives[spec.name], false);
+    const bool rack = spec.kind == LoopKind::rack;
     const int first = first_axis_held(choice);
-    if (first == 3) continue;
+    if (first == 3 && !rack) continue;
     if (poses.empty()) poses = Poses(tree, scene)(t, q.data());
     const auto pose = [&](const std::string& name) {
       const int body = tree.body(name);
@@ -205,6 +210,14 @@ std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
     const Eigen::Matrix3d a = spec.rotation.toRotationMatrix().transpose() * in_parent.linear() *
                               prescribed(choice.turns_a, t) * choice.frame;
     const Eigen::Matrix3d b = prescribed(choice.turns_b, t) * choice.frame;
+    if (rack) {
+      const Eigen::Vector3d D =
+          spec.rotation.conjugate() * (in_parent * spec.origin_child - spec.origin_parent);
+      const double phi = b.col(0).dot(D) / spec.radius - spec.offset;
+      if (a.col(0).dot(b.col(0)) * std::cos(phi) < a.col(0).dot(b.col(1)) * std::sin(phi))
+        all.push_back({i, b.col(2), b.col(2), std::numbers::pi});
+      continue;
+    }
     if (std::optional<TurnedLoop> turned = turn_between(a, b, first)) {
       turned->loop = i;
       decide_half_turn(*turned, parent.linear() * spec.rotation.toRotationMatrix(), first > 0,

@@ -30,6 +30,7 @@ std::optional<Scene> with_ordered_ends(const Scene& scene);
 //   O12 O23 O31   C_12 = C_23 = C_31 = 0   C = 1; three half turns, C diagonal with two −1; four
 //                                          third turns, C_13, C_21, C_32 = ±1 with product 1
 //   O12 (plane)   sin of an angle          0, and half a turn
+//   F of a rack   r sin(θ + ξ/r − offset)  0, and half a turn: led back by its offset
 //
 // (Of rows (c11 0 c13), (c21 c22 0), (0 c32 c33) orthogonality asks c11 c21 = c22 c32 = c13 c33 =
 // 0: if c21 = 0 all off the diagonal is zero, else all on it.) Φ_q has full rank at all of these as

@@ -799,5 +799,20 @@ TEST(Gradient, ByEveryParameterOfTheExamplesIsThatOfRuns) {
   }
 }
 
+// What rounding leaves of a number stands beside larger ones: 1 + 1.2e-16.
+TEST(Gradient, ByANumberNextToZeroIsThatAtZero) {
+  std::string text = four_bar;
+  text.replace(text.find("crank = 0.5"), 11, "crank = \"0.5*(1 + e)\"\ne = 0");
+  const auto by_e = [&](double e) {
+    SceneText scene = of_text(text);
+    scene.fixed.push_back({"e", e});
+    return gradient(scene, asked("A.q", {"e"}, "momentum", "none")).gradient[0];
+  };
+  const double at_zero = by_e(0);
+  EXPECT_GT(std::abs(at_zero), 0.01);
+  for (const double e : {1.2246e-16, -3e-14})
+    EXPECT_NEAR(by_e(e), at_zero, 1e-9 * std::abs(at_zero)) << e;
+}
+
 }  // namespace
 }  // namespace momenta::dae_gradient

@@ -11,6 +11,7 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/mechanism/loop/pair_of_loop.h>
 #include <momenta/dae/mechanism/mechanism.h>
+#include <momenta/dae/topology/assembly/assembly.h>
 
 #include <numbers>
 
@@ -544,6 +545,52 @@ TEST(HigherPairs, JacobiansOfForms) {
       EXPECT_EQ(local.version(), version);
     }
   }
+}
+
+// The sine of a rack's angle is zero half a turn off as well.
+TEST(HigherPairs, RacksThatCloseHalfATurnOffAreLedBack) {
+  for (const double offset : {0.0, 0.7})
+    for (const double way : {0.0, 0.05})
+      for (const double guess : {-2.9, -2.0, -1.0, 0.4, 1.0, 2.0, 3.0, 4.0, 5.5}) {
+        Scene scene = parse_scene(R"(
+[[body]]
+name = "slide"
+mass = 1
+shape = { kind = "point" }
+[[body]]
+name = "gear"
+mass = 2
+com = [0.05, 0, 0]
+inertia = 0.03
+[[joint]]
+name = "P"
+kind = "prismatic"
+axis = "x"
+child = "slide"
+[[joint]]
+name = "G"
+kind = "revolute"
+parent = "slide"
+child = "gear"
+[[loop]]
+name = "teeth"
+kind = "rack"
+child = "gear"
+radius = 0.1
+direction = "x"
+origin = { parent = [0, -0.1, 0] }
+[assembly]
+hold = ["P"]
+)",
+                                  "rack.toml");
+        scene.joints[0].position = {way};
+        scene.joints[1].position = {guess};
+        scene.loops[0].offset = offset;
+        const Mechanism mechanism(scene);
+        const VectorXd q = assemble(mechanism).start.q;
+        EXPECT_NEAR(std::remainder(q[1] - offset + way / 0.1, 2 * std::numbers::pi), 0, 1e-10)
+            << offset << " " << way << " " << guess;
+      }
 }
 
 }  // namespace

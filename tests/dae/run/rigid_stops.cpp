@@ -483,5 +483,96 @@ TEST(RigidStops, RefuseAStartBeyondThem) {
   }
 }
 
+// W Λ = (1 + e) γ⁻ with the stop that holds, whatever acts behind the impact: slide a lies at its
+// wall, b comes at −1 and meets a. Λ = 1.8 on both; then a is drawn along by 2 (v_b − v_a).
+TEST(RigidStops, TakePartInAnImpactThatLetsThemGo) {
+  const Scene scene = parse_scene(R"(
+[[body]]
+name = "a"
+mass = 1
+shape = { kind = "point" }
+[[body]]
+name = "b"
+mass = 1
+shape = { kind = "point" }
+[[joint]]
+name = "P"
+kind = "prismatic"
+child = "a"
+axis = "x"
+limits = [0, 9]
+restitution = 0.5
+[[joint]]
+name = "Q"
+kind = "prismatic"
+parent = "a"
+child = "b"
+axis = "x"
+position = 0.5
+velocity = -1
+limits = [0, 9]
+restitution = 0.8
+[[force]]
+kind = "torque"
+joint = "P"
+law = "2*Q.u"
+)",
+                                  "held.toml");
+  for (const Method& m : methods) {
+    const RunResult result = run(scene, m, 1);
+    ASSERT_EQ(result.status, "done") << m.form << ": " << result.reason;
+    const auto impacts = contacts(result, "impact");
+    ASSERT_EQ(impacts.size(), 1u) << m.form;
+    EXPECT_NEAR(impacts[0].impulse, 1.8, 100 * m.bound) << m.form;
+    EXPECT_EQ(contacts(result, "released").size(), 1u) << m.form;
+    const double after = result.series.t.back() - impacts[0].t,
+                 a = 0.8 * (after - 0.5 * (1 - std::exp(-2 * after)));
+    EXPECT_NEAR(result.trajectory.rows.back()[1], a, 100 * m.bound) << m.form;
+    EXPECT_NEAR(result.trajectory.rows.back()[2], 0.8 * after - a, 100 * m.bound) << m.form;
+  }
+}
+
+// Flights of 1e-4 s in a run of 1e5 s: each stop is met again within 1e-8 of the run, and was left.
+TEST(RigidStops, AreLeftByFlightsThatAreShortForTheRun) {
+  const Mechanism mechanism(parse_scene(R"(
+[[body]]
+name = "a"
+mass = 1
+shape = { kind = "point" }
+[[joint]]
+name = "P"
+kind = "prismatic"
+child = "a"
+position = 5e-5
+velocity = 1
+limits = [0, 1e-4]
+restitution = 1
+)",
+                                        "flights.toml"));
+  RigidStops stops(mechanism, 1e5);
+  RunResult told;
+  Start at = stops.begin(assemble(mechanism).start, told);
+  for (int k = 0; k < 10; ++k) {
+    const bool upper = k % 2 == 0;
+    double taken = 0;
+    const VectorXd q = VectorXd::Constant(1, upper ? 1e-4 : 0), u = at.u;
+    at = stops.meet(5e-5 + 1e-4 * k, q, u, {upper ? 1UL : 0UL}, told, taken);
+    EXPECT_EQ(at.u[0], -u[0]) << k;
+    EXPECT_FALSE(stops.any_held()) << k;
+  }
+}
+
+// Flights are over before a method looks at its clock.
+TEST(RigidStops, ARunOfManyShortFlightsEndsAtItsLimitOfTime) {
+  const Mechanism mechanism(slide(1, "position = 1e-4\n"));
+  RunRequest request =
+      equations::kept(equations::adaptive("momentum", "dop853", "none", 1e-8, 1e5, 10));
+  request.max_cpu_seconds = 0.2;
+  const RunResult result = run_form(mechanism, assemble(mechanism).start, request);
+  EXPECT_EQ(result.status, "time limit");
+  EXPECT_NE(result.reason.find("time limit of 0.2 s"), std::string::npos) << result.reason;
+  EXPECT_LT(result.cpu_s, 2);
+}
+
 }  // namespace
 }  // namespace momenta::dae_rigid_stops

@@ -299,5 +299,33 @@ TEST(Identification, RefusesFilesThatAreNoMeasurement) {
             "'S.u'");
 }
 
+// A trial whose motion does not end has no value, and a search that is stopped leaves its run.
+TEST(Identification, RunsOfTrialsEnd) {
+  TrialLimit limit;
+  const auto steps_of = [&] {
+    const auto goes_on = limit.next();
+    long steps = 0;
+    while (goes_on(0)) ++steps;
+    return steps;
+  };
+  const auto first = limit.next();
+  for (int i = 0; i < 200; ++i) EXPECT_TRUE(first(0));
+  limit.arrived();
+  EXPECT_EQ(steps_of(), 100 * 200 + 10'000);
+  limit.ask([] { return false; });
+  EXPECT_LT(steps_of(), 64);
+
+  IdentificationRequest request = request_for(oscillator, {"k", "c"});
+  const ParametricMechanism family(oscillator, "identified.toml", {}, {"k", "c"});
+  long asked = 0, most = 1'000'000;
+  request.progress = [&](int, double) { return ++asked < most; };
+  EXPECT_FALSE(identify(family, measured_of({}, 40, 0.11), request).stopped);
+  most = asked / 2;
+  asked = 0;
+  const Identification half = identify(family, measured_of({}, 40, 0.11), request);
+  EXPECT_TRUE(half.stopped);
+  EXPECT_EQ(half.starts[0].why, "it was stopped");
+}
+
 }  // namespace
 }  // namespace momenta::dae_identification

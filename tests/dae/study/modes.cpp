@@ -512,5 +512,19 @@ stiffness = 4
           "spring 'pull'");
 }
 
+// At and beyond a rigid stop motions, however small, have impacts.
+TEST(Modes, AtRigidStopsAreRefused) {
+  const auto pendulum = [](const std::string& limits, double velocity) {
+    return "gravity = [0, -9.81, 0]\n[[body]]\nname = \"a\"\nmass = 1\nshape = { kind = \"rod\", "
+           "length = 1 }\n[[joint]]\nname = \"A\"\nkind = \"revolute\"\nchild = \"a\"\nposition = "
+           "-0.9\nvelocity = " +
+           std::to_string(velocity) + "\nlimits = " + limits + "\nrestitution = 0\n";
+  };
+  const std::string sentence =
+      equations::thrown<SceneError>([&] { modes_of(pendulum("[-1, 1]", 0)); });
+  EXPECT_TRUE(equations::says(sentence, "joint 'A' is at -1.5708, at or beyond its rigid stop"));
+  EXPECT_NEAR(frequencies(modes_of(pendulum("[-2, 1]", 0))).at(0), std::sqrt(1.5 * g), 1e-8);
+}
+
 }  // namespace
 }  // namespace momenta::dae_modes

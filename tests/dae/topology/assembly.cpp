@@ -560,5 +560,34 @@ TEST(Assembly, ReplacedRatesAreTold) {
             "1/s, y.dot from 1 to 0.84 1/s");
 }
 
+TEST(Assembly, TellsADriveWithoutASecondDerivativeAtTheStart) {
+  const std::string text = R"(
+[[body]]
+name = "c"
+mass = 1
+inertia = 0.1
+[[body]]
+name = "p"
+mass = 0.4
+shape = { kind = "rod", length = 0.7 }
+[[joint]]
+name = "X"
+kind = "prismatic"
+axis = "x"
+child = "c"
+[[joint]]
+name = "J"
+kind = "revolute"
+parent = "c"
+child = "p"
+[[drive]]
+joint = "X"
+kind = "formula"
+law = "t^)";
+  EXPECT_TRUE(says(complaint(parse_scene(text + "1.5\"\n", "law.toml")),
+                   "the drive of joint 'X' has no finite second derivative at t = 0 s"));
+  EXPECT_EQ(complaint(parse_scene(text + "3\"\n", "law.toml")), "");
+}
+
 }  // namespace
 }  // namespace momenta::dae_assembly

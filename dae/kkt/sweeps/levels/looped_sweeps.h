@@ -2,6 +2,7 @@
 // The interface of the sweeps that carry loops, the same for every algebra, level and number of
 // slots.
 
+#include <momenta/core/scalar/pack.h>
 #include <momenta/dae/kkt/sweeps/slots/right_side.h>
 
 #include <cstddef>
