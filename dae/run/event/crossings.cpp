@@ -123,9 +123,15 @@ void Crossings::look_at(double t0, double t1, const Values& values) {
       else if (!turns && sign * p[j] <= std::min({low, sign * before, sign * after}))
         places_.push_back(lowest(from, to, sign));
     }
-    std::sort(places_.begin(), places_.end(),
-              [](const Place& a, const Place& b) { return a.t < b.t; });
+  } else {
+    for (std::size_t i = 0; i < last; ++i)
+      if (std::isnan(values[i]) != std::isnan(values[i + 1])) {
+        const double a = point(t0, t1, i), b = point(t0, t1, i + 1);
+        places_.push_back(std::isnan(values[i]) ? first_value(a, b) : first_value(b, a));
+      }
   }
+  std::sort(places_.begin(), places_.end(),
+            [](const Place& a, const Place& b) { return a.t < b.t; });
   for (const Place& x : places_) take(x.t, x.g);
 }
 
@@ -167,6 +173,15 @@ void Crossings::cross(double t0, double g0, double t1, double g1, bool up) {
   const double most = std::max(std::abs(g0), std::abs(g1));
   const bool pole = !(std::abs(root.before) <= most) && !(std::abs(root.after) <= most);
   if (!std::isnan(root.at) && !pole) found_->push_back({root.at, up});
+}
+
+Crossings::Place Crossings::first_value(double none, double some) const {
+  while (std::abs(some - none) > tolerance_) {
+    const double middle = 0.5 * (none + some);
+    if (middle == none || middle == some) break;
+    (std::isnan((*g_)(middle)) ? none : some) = middle;
+  }
+  return {some, (*g_)(some)};
 }
 
 Crossings::Place Crossings::lowest(double t0, double t1, double sign) const {

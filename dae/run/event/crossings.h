@@ -81,6 +81,8 @@ class Crossings {
   void cross(double t0, double g0, double t1, double g1, bool up);
   /// Last zero of g between a place where it is zero and one where it is not.
   double end_of_zero(double zero, double after) const;
+  /// The first place with a value on the way from `none`, where g has none, to `some`.
+  Place first_value(double none, double some) const;
   /// The minimum of sign · g between two places, or the first place found beyond zero.
   Place lowest(double t0, double t1, double sign) const;
 

@@ -128,6 +128,18 @@ TEST(Crossings, AreNoneAtTheStartAtPolesAndWhereZeroIsTouched) {
   expect_same(found_in({0, 1, 2}, [](double t) { return 1 - t; }), {{1, false}}, 0);
 }
 
+// Roots right behind the edge of where a number has a value, whatever the steps.
+TEST(Crossings, BesideTheEdgeOfValues) {
+  for (const double step : {0.05, 0.3, 1.0}) {
+    std::vector<double> times{0};
+    while (times.back() < 1) times.push_back(times.back() + step);
+    expect_same(found_in(times, [](double t) { return std::sqrt(t - 0.5) - 0.1; }), {{0.51, true}},
+                1e-12);
+    expect_same(found_in(times, [](double t) { return std::sqrt(0.5 - t) - 0.1; }), {{0.49, false}},
+                1e-12);
+  }
+}
+
 // A number that stays zero for some steps crosses where it leaves zero, in the step in which that
 // is told: of steps before it no dense output is left.
 TEST(Crossings, OfANumberThatStaysZeroAreWhereItLeavesIt) {
