@@ -14,18 +14,15 @@ namespace {
 
 constexpr double least_ritz = 1e-8;  // relative: rounding
 
-/// Sum of eigenvectors of negative eigenvalues.
-VectorXd negative_of_symmetric(const MatrixXd& T) {
+/// Eigenvectors of negative eigenvalues.
+MatrixXd negative_of_symmetric(const MatrixXd& T) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(0.5 * (T + T.transpose()));
   const double dust = least_ritz * ritz.eigenvalues().cwiseAbs().maxCoeff();
-  VectorXd sum = VectorXd::Zero(T.rows());
-  for (int i = 0; i < T.rows() && ritz.eigenvalues()[i] < -dust; ++i)
-    sum += ritz.eigenvectors().col(i);
-  return sum;
+  return ritz.eigenvectors().leftCols((ritz.eigenvalues().array() < -dust).count());
 }
 
-/// The same for real eigenvalues alone.
-VectorXd negative_of(const MatrixXd& T) {
+/// Sum of those of real eigenvalues.
+MatrixXd negative_of(const MatrixXd& T) {
   if (!(T - T.transpose()).isZero(least_ritz * T.cwiseAbs().maxCoeff())) {
     const Eigen::EigenSolver<MatrixXd> ritz(T);
     const double dust = least_ritz * ritz.eigenvalues().cwiseAbs().maxCoeff();
@@ -34,9 +31,13 @@ VectorXd negative_of(const MatrixXd& T) {
       if (const auto kappa = ritz.eigenvalues()[i];
           kappa.real() < -dust && std::abs(kappa.imag()) <= dust)
         sum += ritz.eigenvectors().col(i).real();
-    return sum;
+    return sum.isZero(0) ? MatrixXd(T.rows(), 0) : MatrixXd(sum);
   }
   return negative_of_symmetric(T);
+}
+
+VectorXd sum_of(const MatrixXd& ways) {
+  return ways.cols() > 0 ? VectorXd(ways.rowwise().sum()) : VectorXd();
 }
 
 }  // namespace
@@ -67,10 +68,10 @@ VectorXd NegativeCurvature::stiffness(double t, const VectorXd& y) {
   return result;
 }
 
-/// Sum of Ritz vectors of negative value, in the Krylov space of a random vector. `image` takes y
+/// Ritz vectors of negative value, in the Krylov space of a random vector. `image` takes y
 /// and M y, and is self-adjoint in M where K is symmetric; an empty result ends the space.
 template <class Image>
-VectorXd NegativeCurvature::negative(int steps, bool symmetric, Image&& image) {
+MatrixXd NegativeCurvature::negative(int steps, bool symmetric, Image&& image) {
   const int nv = mechanism_.nv();
   steps = std::min(steps, nv);
   std::mt19937 random(1);
@@ -99,8 +100,16 @@ VectorXd NegativeCurvature::negative(int steps, bool symmetric, Image&& image) {
   }
   if (count == 0) return {};
   const MatrixXd T = P.leftCols(count).transpose() * images.leftCols(count);
-  const VectorXd sum = symmetric ? negative_of_symmetric(T) : negative_of(T);
-  return sum.isZero(0) ? VectorXd() : VectorXd(Y.leftCols(count) * sum);
+  const MatrixXd ways = symmetric ? negative_of_symmetric(T) : negative_of(T);
+  return Y.leftCols(count) * ways;
+}
+
+MatrixXd NegativeCurvature::downward(const MatrixXd& ways) {
+  MatrixXd all(ways.rows(), ways.cols());
+  Eigen::Index count = 0;
+  for (const VectorXd y : ways.colwise())
+    if (y.dot(stiffness(now_, y)) < 0) all.col(count++) = y;
+  return all.leftCols(count);
 }
 
 VectorXd NegativeCurvature::find(double t, const VectorXd& q, const VectorXd& lambda,
@@ -110,18 +119,22 @@ VectorXd NegativeCurvature::find(double t, const VectorXd& q, const VectorXd& la
   place_ = q;
   std::copy(lambda.begin(), lambda.end(), lambda_.begin());
   poses_.evaluation().place(t, q.data());
-  const VectorXd far = negative(most_far, symmetric, [&](const VectorXd& y, const VectorXd&) {
-    VectorXd next;
-    const VectorXd force = stiffness(t, y);
-    return poses_.free_velocity(t, q, force, next) ? next : VectorXd();
-  });
+  const auto checked = [&](const MatrixXd& ways) {
+    return sum_of(symmetric ? downward(ways) : ways);
+  };
+  const VectorXd far =
+      checked(negative(most_far, symmetric, [&](const VectorXd& y, const VectorXd&) {
+        VectorXd next;
+        const VectorXd force = stiffness(t, y);
+        return poses_.free_velocity(t, q, force, next) ? next : VectorXd();
+      }));
   if (far.size() > 0) return far;
   poses_.evaluation().place(t, q.data());
-  return negative(most_near, symmetric, [&](const VectorXd&, VectorXd p) {
+  return checked(negative(most_near, symmetric, [&](const VectorXd&, VectorXd p) {
     VectorXd gap = VectorXd::Zero(mechanism_.m());
     factored.solve(p, gap);
     return p;
-  });
+  }));
 }
 
 }  // namespace momenta

@@ -25,7 +25,9 @@ class NegativeCurvature {
 
  private:
   template <class Image>
-  Eigen::VectorXd negative(int steps, bool symmetric, Image&& image);
+  Eigen::MatrixXd negative(int steps, bool symmetric, Image&& image);
+  /// Those of the ways y (columns) with yᵀKy < 0: rounding in M⁻¹ may turn the sign of a κ.
+  Eigen::MatrixXd downward(const Eigen::MatrixXd& ways);
   Eigen::VectorXd stiffness(double t, const Eigen::VectorXd& y);
 
   const Mechanism& mechanism_;
