@@ -181,7 +181,7 @@ Tried try_scene(const Scene& scene, const std::string& form, double seconds) {
       return {"assembled to what is not finite"};
     if (m > 0 && rank_report(mechanism, assembly.start).rank > m) return {"rank above m"};
     plan_lines(mechanism);
-    RunRequest request = kept(adaptive(form, "", "leak", 1e-5, 0.1, 5));
+    RunRequest request = kept(adaptive(form, "", "leak", 1e-5, seconds, 5));
     request.max_cpu_seconds = seconds;
     run = run_form(mechanism, assembly.start, request);
   } catch (const SceneError& error) {

@@ -85,7 +85,7 @@ class Searcher {
         ++found.steps;
         const bool moved = search == Search::settle ? settle(t, here) : halve(t, here);
         // Steps may end above `at_rest`, where rounding hides what a step gains.
-        const bool ends = here.left <= at_rest || (!moved && here.left <= balanced);
+        const bool ends = here.left <= at_rest || !moved;
         if (search == Search::settle && ends && leave_saddle(t, here)) continue;
         if (!moved || !((here.q - q).cwiseAbs().maxCoeff() < gone * std::max(length_, 1.0))) break;
       }

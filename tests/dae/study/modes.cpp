@@ -526,5 +526,105 @@ TEST(Modes, AtRigidStopsAreRefused) {
   EXPECT_NEAR(frequencies(modes_of(pendulum("[-2, 1]", 0))).at(0), std::sqrt(1.5 * g), 1e-8);
 }
 
+// A descent that ends by rounding near a saddle, with more force left than an equilibrium may have:
+// it goes on along what curves downwards there. Frequencies: those about the pose that a gradient
+// flow finds.
+TEST(Modes, OfALinkageWhoseDescentStallsNearASaddle) {
+  const ModesResult r = modes_of(R"(gravity=[0,-9.81,0]
+[[body]]
+name="b0"
+mass=2.6536119030626812
+com=[0.2856,0.0273,0]
+inertia=0.0181
+[[body]]
+name="b1"
+mass=2.780174299989154
+com=[0.3262,0.0098,0]
+inertia=0.1076
+[[body]]
+name="b2"
+mass=2.9140538164185115
+com=[0.4918,0.0084,0]
+inertia=0.0247
+[[body]]
+name="b3"
+mass=2.9101758132467603
+com=[0.3507,-0.0963,0]
+inertia=0.1881
+[[body]]
+name="b4"
+mass=2.8664536665967506
+com=[0.2588,-0.0252,0]
+inertia=0.0418
+[[joint]]
+name="J0"
+kind="revolute"
+parent="ground"
+child="b0"
+origin={parent=[0.514,-0.03,0],child=[0,0,0]}
+position=0.228
+rotation={axis="z",angle=0.7}
+[[joint]]
+name="J1"
+kind="revolute"
+parent="ground"
+child="b1"
+origin={parent=[0.72,-0.057,0],child=[0,0,0]}
+position=0.528
+rotor_inertia=0.21
+[[joint]]
+name="J2"
+kind="revolute"
+parent="b0"
+child="b2"
+origin={parent=[0.903,-0.021,0],child=[0,0,0]}
+position=-0.173
+damping=0.99
+[[joint]]
+name="J3"
+kind="prismatic"
+parent="b2"
+child="b3"
+origin={parent=[0.703,0.179,0],child=[0,0,0]}
+position=-1.222
+axis=[1.0,0.0,0]
+stiffness=42.65
+rest=0.38
+[[joint]]
+name="J4"
+kind="revolute"
+parent="b3"
+child="b4"
+origin={parent=[0.513,-0.002,0],child=[0,0,0]}
+position=0.544
+rotor_inertia=0.24
+[[loop]]
+name="L0"
+kind="point"
+parent="ground"
+child="b4"
+origin={parent=[1.135162847222961,1.4821788600504378,0],child=[0.703,0.0,0]}
+[[force]]
+name="S0"
+kind="spring-damper"
+parent="ground"
+child="b4"
+origin={parent=[1.65,0.29,0],child=[0.19,0.05,0]}
+stiffness=51.9
+rest=0.74
+[[force]]
+name="S1"
+kind="spring-damper"
+parent="ground"
+child="b2"
+origin={parent=[0.36,-1.87,0],child=[0.36,0.05,0]}
+stiffness=17.3
+rest=0.27
+)");
+  EXPECT_STREQ(r.nature(), "stable");
+  EXPECT_NEAR(r.spectrum.modes.front().frequency(), 0.6061, 1e-4);
+  EXPECT_NEAR(std::remainder(r.equilibrium.q[0] + 2.32819, 2 * pi), 0, 1e-5);
+}
+
 }  // namespace
 }  // namespace momenta::dae_modes
