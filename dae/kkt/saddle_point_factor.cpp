@@ -132,7 +132,7 @@ class EliminationError {
     for (int pose = 0; there && pose < poses; ++pose) {
       const double here = worst_at(q.data());
       error = std::min(error, here);
-      there = std::isfinite(here) && error > most_leaves_first_error && move(q);
+      there = std::isfinite(here) && error > most_elimination_error && move(q);
     }
     return error;
   }

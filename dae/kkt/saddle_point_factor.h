@@ -59,7 +59,7 @@ std::unique_ptr<SaddlePointFactor> saddle_point_factor(const Mechanism& mechanis
 // roundings of one may cancel. Source: Oettli, Prager, Numer. Math. 6 (1964) 405.
 
 /// The ω that a run at the tightest tolerances of use does not notice.
-inline constexpr double most_leaves_first_error = 1e-9;
+inline constexpr double most_elimination_error = 1e-9;
 
 /// v (nv) and σ (m) of M v + Φ_qᵀσ = p, Φ_q v = −βΦ at q, drives at rest. False: not solved; none:
 /// solved by other means.

@@ -207,13 +207,13 @@ std::string SolverChoice::loops_missed() const {
                             return true;
                           });
   }
-  if (error <= most_leaves_first_error) return "";
+  if (error <= most_elimination_error) return "";
   char missed[160];
   if (std::isfinite(error))
     std::snprintf(missed, sizeof missed,
                   "joints eliminated before their loops miss (7) by %.0e of its terms, more than "
                   "%.0e, as ",
-                  error, most_leaves_first_error);
+                  error, most_elimination_error);
   else
     std::snprintf(missed, sizeof missed,
                   "joints eliminated before their loops leave (7) without a solution near the "

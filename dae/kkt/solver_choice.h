@@ -31,7 +31,7 @@ class SolverChoice {
   /// Whether the sweeps solve it, and no matrix is assembled.
   bool by_sweeps() const { return kkt_ == KktChoice::sweeps && !dense_; }
   /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
-  /// that point, and a solution so made is right to most_leaves_first_error.
+  /// that point, and a solution so made is right to most_elimination_error.
   bool leaves_first() const { return light_.empty(); }
   /// Whether the sweeps, or else the matrix of make_kkt(), have a pivot for each row of Φ, which
   /// can fade and be reported: KLU has none. Sweeps are chosen only where leaves_first().

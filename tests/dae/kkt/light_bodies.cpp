@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// How far u is off, and how far an ω of most_leaves_first_error lets it be, both relative to the
+/// How far u is off, and how far an ω of most_elimination_error lets it be, both relative to the
 /// largest rate.
 struct Off {
   double error = 0, allowed = 0;
@@ -95,7 +95,7 @@ Off error_of(const Mechanism& mechanism) {
                                  sigma.data(), nullptr));
     const VectorXd exact = quad_rates(mechanism, q, p, v, 0, 1e-22).u;
     const Off here{(u - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff(),
-                   most_leaves_first_error * conditioned.condition(u, sigma, v)};
+                   most_elimination_error * conditioned.condition(u, sigma, v)};
     if (motion == 0 || here.error * worst.allowed > worst.error * here.allowed) worst = here;
   }
   return worst;
