@@ -31,12 +31,16 @@ Scene SceneText::scene(const std::vector<Setting>& more) const {
   return parse_scene(text, file, all);
 }
 
-double step_size(double value, const std::function<bool(double)>& exists) {
+double step_size(double value, const std::function<void(double)>& make) {
   constexpr double next_to_nothing = 1e-12, widest = 3 * sixth_order::part;
   const double magnitude = std::abs(value);
   if (magnitude >= next_to_nothing) return magnitude;
-  for (double size = 1; size > next_to_nothing; size /= 8)
-    if (exists(value + widest * size) && exists(value - widest * size)) return size;
+  for (double size = 1; size > next_to_nothing; size /= 8) try {
+      make(value + widest * size);
+      make(value - widest * size);
+      return size;
+    } catch (const SceneError&) {  // narrower
+    }
   return magnitude > 0 ? magnitude : 1;
 }
 
@@ -90,14 +94,7 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
   }
   for (RunVariable& v : chosen)
     if (v.kind == Kind::parameter)
-      v.size = step_size(v.value, [&](double value) {
-        try {
-          scene.scene({{v.name, value}});
-        } catch (const SceneError&) {
-          return false;
-        }
-        return true;
-      });
+      v.size = step_size(v.value, [&](double value) { scene.scene({{v.name, value}}); });
   if (chosen.empty())
     throw std::invalid_argument(
         "no numbers are named that the gradient is by; expected parameters or start values");

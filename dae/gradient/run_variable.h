@@ -39,9 +39,9 @@ struct SceneText {
 
 /// Scale of the steps of differences by a number of a scene: its magnitude. Below 1e-12 it may be
 /// what rounding left of zero, and stand beside larger numbers, as in "1 + e": there, and at zero,
-/// the scale is 1, or the largest power of 1/8 at which scenes on both sides exist, which `exists`
-/// tells of a value. Cost: two scenes for each power
-double step_size(double value, const std::function<bool(double)>& exists);
+/// the scale is 1, or the largest power of 1/8 at which `make` makes scenes on both sides, without
+/// a SceneError. Cost: two scenes for each power
+double step_size(double value, const std::function<void(double)>& make);
 
 /// Variables by name: a parameter, "a" or "parameters.a"; a coordinate or rate, as in the header of
 /// trajectory.csv, but no part of a quaternion; any other number by its place

@@ -57,12 +57,7 @@ VectorXd sizes_of(const ParametricMechanism& family,
       sizes[j] = step_size(family.own()[j], [&](double value) {
         VectorXd theta = family.own();
         theta[j] = value;
-        try {
-          family.scene(theta);
-        } catch (const SceneError&) {
-          return false;
-        }
-        return true;
+        family.scene(theta);
       });
   }
   return sizes;
