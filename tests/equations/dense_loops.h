@@ -249,7 +249,7 @@ class DenseLoops {
     const Triple<Real> z{0, 0, 1};
     Triple<Real> third = z;
     if (kind == LoopKind::revolute || kind == LoopKind::prismatic || kind == LoopKind::universal ||
-        kind == LoopKind::cylindrical || kind == LoopKind::planar)
+        kind == LoopKind::cylindrical || kind == LoopKind::planar || kind == LoopKind::slot)
       third = unit(spec.axis);
     const Triple<Real> hinge = third;
     Triple<Real> second{};
@@ -283,6 +283,7 @@ class DenseLoops {
     switch (kind) {
       case LoopKind::prismatic:
       case LoopKind::cylindrical:
+      case LoopKind::slot:
         l.points = {0, 1};
         slide(0, 2);
         break;
@@ -313,7 +314,8 @@ class DenseLoops {
         l.cosine = inner(hinge, second);
       }
     }
-    if (l.axes.empty() && kind != LoopKind::point && kind != LoopKind::spherical)
+    if (l.axes.empty() && kind != LoopKind::point && kind != LoopKind::spherical &&
+        kind != LoopKind::slot)
       l.axes = {{2, 0}, {2, 1}};
     if (angle) {
       l.axes.emplace_back(0, 1);
@@ -329,7 +331,8 @@ class DenseLoops {
     Loop l{&spec, {}, {}, {0, 1}, {}, 0, {}, {}, {}, {}, {}};
     const Rotation<Real> parent = at_zero.at(spec.parent);
     const Rotation<Real> joint = product(parent, turn_of(spec));
-    const bool slides = spec.kind == LoopKind::prismatic;
+    const bool slot = spec.kind == LoopKind::slot,
+               slides = slot || spec.kind == LoopKind::prismatic;
     const Triple<Real> first =
         slides ? joint * unit(spec.axis) : triple<Real>(Eigen::Vector3d(plane.col(0)));
     const Triple<Real> second = outer(triple<Real>(Eigen::Vector3d(plane.col(2))), first);
@@ -340,7 +343,7 @@ class DenseLoops {
       l.points.push_back(0);
       l.slides.emplace_back(l.b[0], driven[0]);
     }
-    if (slides || spec.kind == LoopKind::weld) l.axes = {{0, 1}};
+    if ((slides && !slot) || spec.kind == LoopKind::weld) l.axes = {{0, 1}};
     if (spec.kind == LoopKind::revolute && driven[0]) {
       l.axes = {{0, 1}};
       l.turns_a.push_back({unit(spec.axis), -1, driven[0]});

@@ -90,8 +90,8 @@ LoopSpec into_plane(RandomTree& random, const Scene& scene, LoopSpec l,
   const auto axes = axes_at_zero(scene);
   const Eigen::Quaterniond a = axes.at(l.child), b = axes.at(l.parent);
   l.rotation = b.conjugate() * Eigen::AngleAxisd(random.uniform(-3, 3), normal) * a;
-  l.axis = a.conjugate() *
-           (l.kind == LoopKind::prismatic ? Eigen::Vector3d(normal.unitOrthogonal()) : normal);
+  const bool slides = l.kind == LoopKind::prismatic || l.kind == LoopKind::slot;
+  l.axis = a.conjugate() * (slides ? Eigen::Vector3d(normal.unitOrthogonal()) : normal);
   return l;
 }
 

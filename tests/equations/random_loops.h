@@ -11,14 +11,14 @@
 namespace momenta::equations {
 
 /// Those a plane knows, and all.
-inline constexpr std::array planar_loop_kinds{LoopKind::point,     LoopKind::revolute,
-                                              LoopKind::spherical, LoopKind::weld,
-                                              LoopKind::prismatic, LoopKind::distance};
+inline constexpr std::array planar_loop_kinds{
+    LoopKind::point,     LoopKind::revolute, LoopKind::spherical, LoopKind::weld,
+    LoopKind::prismatic, LoopKind::distance, LoopKind::slot};
 inline constexpr std::array loop_kinds{
     // of bodies
-    LoopKind::point,     LoopKind::revolute,    LoopKind::spherical,
-    LoopKind::weld,      LoopKind::prismatic,   LoopKind::distance,
-    LoopKind::universal, LoopKind::cylindrical, LoopKind::planar};
+    LoopKind::point,     LoopKind::revolute, LoopKind::spherical, LoopKind::weld,
+    LoopKind::prismatic, LoopKind::distance, LoopKind::universal, LoopKind::cylindrical,
+    LoopKind::planar,    LoopKind::slot};
 
 LoopSpec random_loop(RandomTree& random, const Scene& scene, LoopKind kind);
 

@@ -81,7 +81,9 @@ void drive_from(RandomTree& random, Scene& scene, const LoopSpec& loop, double v
 
 /// Whether a loop has one coordinate of its own, and where it stands once closed.
 std::optional<double> coordinate_of(const LoopSpec& loop) {
-  if (loop.kind == LoopKind::revolute || loop.kind == LoopKind::prismatic) return 0;
+  if (loop.kind == LoopKind::revolute || loop.kind == LoopKind::prismatic ||
+      loop.kind == LoopKind::slot)
+    return 0;
   if (loop.kind == LoopKind::distance) return loop.length;
   if (loop.kind == LoopKind::coupler) return loop.offset;
   return std::nullopt;

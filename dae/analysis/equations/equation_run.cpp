@@ -13,12 +13,16 @@ std::string integrator_for(const EquationFile& file, const EquationStart& start)
   return start.point.found.index <= 1 ? "ida" : "radau5";
 }
 
+int largest_index(std::string_view integrator) {
+  return integrator == "ida" ? 2 : 3;
+}
+
 EquationRun run_equations(const EquationFile& file, const EquationStart& start,
                           const EquationRunRequest& request) {
   if (request.integrator != "ida" && request.integrator != "radau5")
     throw std::invalid_argument("integrator '" + request.integrator +
                                 "' takes mechanisms, expected ida or radau5 for equations");
-  const int index = start.point.found.index, most = request.integrator == "ida" ? 2 : 3;
+  const int index = start.point.found.index, most = largest_index(request.integrator);
   if (index > most)
     throw std::invalid_argument(
         file.where({}) + request.integrator + " takes equations of index up to " +
@@ -31,7 +35,7 @@ EquationRun run_equations(const EquationFile& file, const EquationStart& start,
   run.end = request.end;
   run.start = file.start;
   const std::clock_t before = std::clock();
-  if (request.integrator != "ida" || !SwitchedRun(file, request).run(start, run))
+  if (request.step > 0 || !SwitchedRun(file, request).run(start, run))
     integrate_piece(file, start, request, {}, 0, run);
   run.cpu_s = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   for (const double y : run.last)

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace momenta {
@@ -28,7 +29,7 @@ struct EquationRun {
   std::string reason;  ///< one sentence unless done
   double stopped_at = 0;
   Counters counters;
-  int switchings = 0;  ///< events of switches in formulas, at which ida began anew
+  int switchings = 0;  ///< events of switches in formulas, at which the run began anew
   std::string linear_solver;
   double cpu_s = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> t;               ///< output times
@@ -44,8 +45,10 @@ struct EquationRun {
 /// "ida" up to index 1, else "radau5"; the file's own where it names one.
 std::string integrator_for(const EquationFile& file, const EquationStart& start);
 
-/// @throws std::invalid_argument where the integrator does not take the index: IDA up to 2, Radau
-/// IIA up to 3
+/// Of equations that it takes: 2 for ida, 3 for radau5.
+int largest_index(std::string_view integrator);
+
+/// @throws std::invalid_argument where the integrator does not take the index
 EquationRun run_equations(const EquationFile& file, const EquationStart& start,
                           const EquationRunRequest& request);
 

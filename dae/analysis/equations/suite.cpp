@@ -101,7 +101,7 @@ ProblemResult run_problem(const EquationFile& file, const SuiteProblem& problem,
   for (const std::string& method : problem.methods)
     for (const double tolerance : problem.tolerances) {
       if (!going_on(method + " at " + compact(tolerance, 2))) return result;
-      if (result.index > (method == "ida" ? 2 : 3)) continue;
+      if (result.index > largest_index(method)) continue;
       EquationRunRequest run;
       run.integrator = method;
       run.rtol = run.atol = tolerance;

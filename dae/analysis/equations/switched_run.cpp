@@ -190,7 +190,7 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
 
 bool SwitchedRun::stop(double t, const std::string& why, EquationRun& run) {
   run.done = false;
-  run.reason = stop_sentence("ida", t, why);
+  run.reason = stop_sentence(request_.integrator, t, why);
   run.stopped_at = t;
   run.last = held_.values;
   return true;
@@ -204,7 +204,7 @@ bool SwitchedRun::as_written(double spent_s, EquationRun& run) {
   written.held = held_.held;
   try {
     const EquationStart start = equation_start(written);
-    if (!start.point.why.empty() || start.point.found.index > 2 || jumping(start) >= 0)
+    if (!start.point.why.empty() || start.point.found.index > most_index() || jumping(start) >= 0)
       return false;
     integrate_piece(written, start, request_, {}, spent_s, run);
   } catch (const SceneError&) {
@@ -218,7 +218,7 @@ bool SwitchedRun::piece(const EquationStart& start, double spent_s, EquationRun&
   turns_.which.clear();
   if (request_.max_cpu_seconds > 0 && spent_s > request_.max_cpu_seconds) {
     run.done = false;
-    run.reason = time_limit_sentence("ida", request_.max_cpu_seconds, held_.start);
+    run.reason = time_limit_sentence(request_.integrator, request_.max_cpu_seconds, held_.start);
     return false;
   }
   integrate_piece(
@@ -283,9 +283,10 @@ std::string SwitchedRun::begin_anew(EquationStart& start) {
   }
   if (!start.point.why.empty())
     return "no consistent start where " + where + " turns: " + start.point.why;
-  if (start.point.found.index > 2)
+  if (start.point.found.index > most_index())
     return "where " + where + " turns the index becomes " +
-           std::to_string(start.point.found.index) + ", expected up to 2";
+           std::to_string(start.point.found.index) + ", expected up to " +
+           std::to_string(most_index());
   if (const int j = jumping(start); j >= 0) {
     const auto at = static_cast<std::size_t>(j);
     return where + " makes " + held_.variables[at] + " jump from " + compact(held_.values[at], 6) +

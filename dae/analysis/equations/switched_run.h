@@ -1,8 +1,8 @@
 #pragma once
 // A run in pieces between the switches of a file's formulas: comparisons, sign and floor
-// (core/expression/switches.h). In a piece each switch is held in its mode, so that BDF's
-// polynomials reach across no jump. Where a switch turns, by the dense output, the piece ends; the
-// next one begins from a consistent start in the new mode.
+// (core/expression/switches.h). In a piece each switch is held in its mode, so that the
+// integrator's polynomials reach across no jump. Where a switch turns, by the dense output, the
+// piece ends; the next one begins from a consistent start in the new mode.
 //
 // Where the new mode turns back at once, the two sides drive against each other; where a mode ends
 // short of its switch, formulas may have no values behind it: log(x) in if(x > 0, log(x), 0). The
@@ -40,6 +40,7 @@ class SwitchedRun {
     std::vector<std::size_t> which;
     std::vector<double> modes;  ///< new modes
   };
+  int most_index() const { return largest_index(request_.integrator); }
   double& mode(std::size_t k) { return held_.parameters[file_.parameters.size() + k]; }
   double argument(std::size_t k, double t, const double* y);
   double margin(std::size_t k, double t, const double* y) {

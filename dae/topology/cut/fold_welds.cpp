@@ -115,15 +115,18 @@ bool has_ends(const ForceSpec& f) {
   return f.kind == "spring-damper" || f.kind == "bushing";
 }
 
-/// Bodies whose own weld must stay for formulas: an end of a spring whose length they name and
-/// whose ends would be on one body, and bodies in whose axes components are.
-std::set<std::string> held_by_formulas(const Scene& scene, const NamedInFormulas& named,
-                                       const Places& places) {
+/// Bodies whose own weld must stay for forces: the child of a bushing with damping that would be
+/// ground, since velocities at its point are not those at the parent's; an end of a spring whose
+/// length formulas name and whose ends would be on one body; bodies in whose axes components are.
+std::set<std::string> held_by_forces(const Scene& scene, const NamedInFormulas& named,
+                                     const Places& places) {
   std::set<std::string> bodies;
   for (const ForceSpec& f : scene.forces) {
-    if (has_ends(f) && named.springs.contains(f.name) &&
-        places.of(f.parent).carrier == places.of(f.child).carrier)
+    const bool on_one = has_ends(f) && places.of(f.parent).carrier == places.of(f.child).carrier;
+    if (on_one && named.springs.contains(f.name))
       bodies.insert(places.carries(f.child) ? f.parent : f.child);
+    if (f.kind == "bushing" && f.damping != 0 && !on_one && places.of(f.child).carrier == "ground")
+      bodies.insert(f.child);
     if (f.in_body_axes && has_formula(f) && places.of(f.body).turned()) bodies.insert(f.body);
   }
   return bodies;
@@ -211,7 +214,7 @@ FoldedScene fold_welds(const Scene& given) {
   const NamedInFormulas named(given);
   const auto held_now = [&] {
     std::set<std::string> held = held_by_loops(given, places, driven);
-    held.merge(held_by_formulas(given, named, places));
+    held.merge(held_by_forces(given, named, places));
     return held;
   };
   for (auto held = held_now(); !held.empty(); held = held_now()) {

@@ -550,11 +550,16 @@ TEST(EquationRuns, SayWhatLeavesEveryBound) {
 // ---- switches
 // ------------------------------------------------------------------------------------
 
-TEST(EquationRuns, BeginAnewAtJumps) {
+class Switches : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Of, Switches, testing::Values("ida", "radau5"),
+                         [](const auto& one) { return one.param; });
+
+TEST_P(Switches, BeginAnewAtJumps) {
   // A condenser behind a square wave, v' = (s − v)/RC.
   const EquationFile wave = file_of(
       {"v", "i"}, {"0.3*der(v) = i", "2*i + v = if(sin(2*pi*t) >= 0, 1, -1)"}, "[run]\nend = 2\n");
-  const EquationRun square = run(wave, "ida", 1e-8, 0, 40);
+  const EquationRun square = run(wave, GetParam(), 1e-8, 0, 40);
   ASSERT_EQ(square.t.size(), 41u);
   double v = 0, begin = 0;
   for (std::size_t k = 0; k <= 40; ++k) {
@@ -567,7 +572,7 @@ TEST(EquationRuns, BeginAnewAtJumps) {
   // In an algebraic equation; by the state; of floor, sign, abs, min and max.
   const auto end = [](const std::vector<std::string>& variables,
                       const std::vector<std::string>& equations, const std::string& more) {
-    return run(file_of(variables, equations, more), "ida", 1e-8).last[0];
+    return run(file_of(variables, equations, more), GetParam(), 1e-8).last[0];
   };
   EXPECT_NEAR(end({"x", "z"}, {"der(x) = z - x", "z = if(t < 1, x, 2*x)"},
                   "values = { x = 1 }\n[run]\nend = 2\n"),
@@ -586,25 +591,37 @@ TEST(EquationRuns, BeginAnewAtJumps) {
 
 // u(1) = −1/4: time passes by 2(1 − ln 2) down to u = 0, and by 2 ln 2 − 1 from there. Formulas
 // have no values, or no slopes, behind where they turn.
-TEST(EquationRuns, PassSwitchesThatFormulasEndAt) {
+TEST_P(Switches, ArePassedWhereFormulasEndAtThem) {
   for (const std::string law : {"-sign(u)*sqrt(abs(u))", "if(u > 0, -sqrt(u), sqrt(-u))",
                                 "sqrt(max(-u, 0)) - sqrt(max(u, 0))"}) {
     const EquationFile file =
         file_of({"u"}, {"der(u) = " + law + " - 1"}, "values = { u = 1 }\n[run]\nend = 1\n");
-    EXPECT_NEAR(run(file, "ida", 1e-8).last[0], -0.25, 1e-6) << law;
+    EXPECT_NEAR(run(file, GetParam(), 1e-8).last[0], -0.25, 1e-6) << law;
   }
 }
 
-TEST(EquationRuns, NameWhatMakesValuesJump) {
+TEST_P(Switches, AreNamedWhereTheyMakeValuesJump) {
   const EquationFile file =
       file_of({"v", "i"}, {"v = if(t < 0.5, 0, 1)", "i = der(v)"}, "[run]\nend = 1\n");
   EquationRunRequest request;
-  request.integrator = "ida";
+  request.integrator = GetParam();
   const EquationRun r = run_equations(file, equation_start(file), request);
   EXPECT_FALSE(r.done);
   EXPECT_TRUE(equations::says(
       r.reason, "'if' of equation 1, 'v = if(t < 0.5, 0, 1)', makes v jump from 0 to 1"));
   EXPECT_NEAR(r.stopped_at, 0.5, 1e-9);
+}
+
+// x = 0 up to t = 1 and 1 from there: z = x' has an impulse, and no value.
+TEST_P(Switches, AreNamedBeforeImpulses) {
+  const EquationFile file =
+      file_of({"x", "z"}, {"x = if(t > 1, 1, 0)", "der(x) = z"}, "[run]\nend = 2\n");
+  EquationRunRequest request;
+  request.integrator = GetParam();
+  request.end = 2;
+  const EquationRun r = run_equations(file, equation_start(file), request);
+  EXPECT_FALSE(r.done);
+  EXPECT_TRUE(equations::says(r.reason, "makes x jump from 0 to 1"));
 }
 
 // Both sides drive x to 0: no mode holds there, and steps across the jump have no end.

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/model.h>
+#include <momenta/core/scene/kinds.h>
 #include <momenta/dae/form/form.h>
 
 namespace momenta::dae_loop_rows {
@@ -375,9 +376,7 @@ TEST(Couplers, TreesOfAllJoints) {
 }
 
 std::string kind_name(const testing::TestParamInfo<LoopKind>& info) {
-  constexpr std::array names{"point",    "revolute",  "spherical",   "weld",  "prismatic",
-                             "distance", "universal", "cylindrical", "planar"};
-  return names[static_cast<std::size_t>(info.index)];
+  return std::string(reading::name_of(info.param));
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, LoopRows, testing::ValuesIn(loop_kinds), kind_name);
 INSTANTIATE_TEST_SUITE_P(Kinds, PlanarLoopRows, testing::ValuesIn(planar_loop_kinds), kind_name);

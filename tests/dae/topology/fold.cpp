@@ -646,5 +646,32 @@ TEST(Fold, ForcesWithinOneBodyGo) {
   EXPECT_EQ(folded.forces[0].origin_parent, Vector3d(1, 0, 0));
 }
 
+/// The damper of a bushing is where its child's point is: with the ends changed it is elsewhere.
+TEST(Fold, DampedBushingsKeepTheirEnds) {
+  Scene scene = link_and_wheel();
+  scene.loops.clear();
+  scene.joints[0].kind = JointKind::spherical;
+  scene.joints[0].velocity = {0.5, 0.3, 0.2};
+  scene.joints[1].kind = JointKind::weld;
+  scene.joints[1].rotation = Quaterniond(0.9, 0.1, -0.3, 0.2).normalized();
+  ForceSpec bushing;
+  bushing.kind = "bushing";
+  bushing.parent = "link";
+  bushing.child = "wheel";
+  bushing.origin_parent = {0.1, 0.2, 0};
+  bushing.origin_child = {0.3, 0, 0};
+  bushing.stiffness = 7;
+  bushing.rotational_damping = 0.4;
+  scene.forces = {bushing};
+  EXPECT_EQ(fold(scene).scene.bodies.size(), 1U);
+  expect_alike(scene, fold(scene).scene, false, true, 0);
+  scene.forces[0].damping = 1.3;
+  EXPECT_EQ(fold(scene).scene.bodies.size(), 2U);
+  expect_alike(scene, fold(scene).scene, false, true, 1);
+  std::swap(scene.forces[0].parent, scene.forces[0].child);
+  EXPECT_EQ(fold(scene).scene.bodies.size(), 1U);
+  expect_alike(scene, fold(scene).scene, false, true, 2);
+}
+
 }  // namespace
 }  // namespace momenta::dae_fold

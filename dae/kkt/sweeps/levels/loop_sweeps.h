@@ -40,7 +40,9 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
   for (const auto& b : model.bodies) parents.push_back(b.parent);
   std::vector<LoopShape> shapes;
   for (const auto& l : loops.loops) {
-    shapes.push_back({l.a, l.b, l.rows, l.n_points == 2 && l.n_axes == 0});
+    // Along axes 1 and 2 in this order: along a driven slot and across it they are 2 and 1.
+    const bool pair = l.n_points == 2 && l.n_axes == 0 && l.points[0] == 0 && l.points[1] == 1;
+    shapes.push_back({l.a, l.b, l.rows, pair});
     for (const auto& c : l.joints) shapes.back().joints.emplace_back(c.body, c.ratio);
   }
   // In a plane fronts are narrow, and the code that gathers costs more than lanes: rows of

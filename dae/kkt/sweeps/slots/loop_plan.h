@@ -65,7 +65,7 @@ struct LoopPlan {
   /// with its later siblings'.
   std::vector<Range> gathered_closings_of;
   std::vector<int> slot;         ///< per loop: its first slot
-  std::vector<char> pair;        ///< per loop: two point rows and no other
+  std::vector<char> pair;        ///< per loop: rows of its point along axes 1 and 2, and no other
   std::vector<int> folded_onto;  ///< per body: of a root, the body its branch folds into; or −1
   std::vector<char> takes_branches;  ///< per body: branches fold into it
   std::vector<OnWay> posed;          ///< per body: on the way of a loop below where it closes
