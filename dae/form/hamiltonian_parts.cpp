@@ -1,10 +1,13 @@
+#include <momenta/core/expression/tape.h>
 #include <momenta/core/scene/lagrangian/lagrangian_model.h>
+#include <momenta/core/text/quoting.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/unheld_joints.h>
 #include <momenta/dae/mechanism/tree_factor.h>
 
 #include <algorithm>
+#include <span>
 
 namespace momenta {
 namespace {
@@ -12,6 +15,21 @@ namespace {
 /// Least pivot of Φ_q M⁻¹ Φ_qᵀ relative to its group's scale: rounding in dependent rows must ask
 /// for no multiplier.
 constexpr double dependent_rows = 1e-10;
+
+/// The first constraint of a Lagrangian that takes the time. @pre there is one
+std::string moving_constraint(const Mechanism& mechanism) {
+  const LagrangianModel& model = mechanism.lagrangian();
+  const formula::Tape tape(model.positions.tape());
+  const auto takes_time = [&](int place) {
+    const std::vector<int> in = Expression(tape, std::span(&place, 1)).variables();
+    return std::find(in.begin(), in.end(), model.time()) != in.end();
+  };
+  const auto& places = model.positions.outputs();
+  const auto found = std::find_if(places.begin(), places.end(), takes_time) - places.begin();
+  const auto& constraint =
+      mechanism.scene().lagrangian->constraints.at(static_cast<std::size_t>(found));
+  return "constraint " + reading::in_quotes(constraint.name) + ", which takes the time";
+}
 
 class MechanismPlace final : public HamiltonianPlace {
  public:
@@ -108,8 +126,18 @@ HamiltonianParts::Work& HamiltonianParts::parts() {
   return *parts_;
 }
 
-bool HamiltonianParts::prescribed() const {
-  return system_.scene().lagrangian ? system_.lagrangian().moving : system_.plan().drives;
+std::string HamiltonianParts::prescribed() const {
+  const Scene& scene = system_.scene();
+  if (scene.lagrangian) return system_.lagrangian().moving ? moving_constraint(system_) : "";
+  if (!system_.plan().drives) return "";
+  if (!scene.drives.empty()) {
+    const DriveSpec& drive = scene.drives.front();
+    return "the drive of " + (drive.joint.empty() ? "loop " + reading::in_quotes(drive.loop)
+                                                  : "joint " + reading::in_quotes(drive.joint));
+  }
+  for (const JointSpec& joint : scene.joints)
+    if (joint.law) return "the formula of joint " + reading::in_quotes(joint.name);
+  return "a loop equation that takes the time";
 }
 
 std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {

@@ -18,7 +18,7 @@ class HamiltonianParts : public ConstrainedHamiltonian {
   int coordinates() const override { return system_.nq(); }
   int momenta() const override { return system_.nv(); }
   int multipliers() const override { return system_.m(); }
-  bool prescribed() const override;
+  std::string prescribed() const override;
   std::unique_ptr<HamiltonianPlace> place() const override;
   std::string without_inverse(double t, const double* q) override;
   void coordinate_rates(const double* q, const double* u, double* qdot) override;

@@ -49,8 +49,8 @@ class ConstrainedHamiltonian {
   virtual int coordinates() const = 0;  ///< nq
   virtual int momenta() const = 0;      ///< nv
   virtual int multipliers() const = 0;  ///< m
-  /// Whether anything is prescribed: drives, constraints that take the time.
-  virtual bool prescribed() const = 0;
+  /// What is prescribed, in words: a drive, or a constraint that takes the time; empty: nothing.
+  virtual std::string prescribed() const = 0;
   virtual std::unique_ptr<HamiltonianPlace> place() const = 0;
   /// Why M has no inverse at (t, q), in words; empty: it has one.
   virtual std::string without_inverse(double t, const double* q) = 0;

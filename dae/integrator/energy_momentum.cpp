@@ -223,10 +223,9 @@ IntegrationResult integrate_energy_momentum(OdeSystem& system, double t0,
                                             const IntegrationOptions& options,
                                             const Observer& observer) {
   const auto* parts = dynamic_cast<ConstrainedHamiltonian*>(&system);
-  if (parts != nullptr && parts->prescribed())
-    throw std::invalid_argument(
-        "energy-momentum balances the work of forces: expected no prescribed motion, found one, "
-        "whose drive does work too");
+  if (const std::string what = parts != nullptr ? parts->prescribed() : ""; !what.empty())
+    throw std::invalid_argument("energy-momentum balances the work of forces alone: found " + what +
+                                ", and it does work too; expected no prescribed motion");
   return constrained::integrate<EnergyMomentum>(system, t0, y0, output_times, options, observer);
 }
 

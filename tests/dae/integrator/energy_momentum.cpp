@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/format/files/read_scene.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/integrator/constrained_steps.h>
 #include <momenta/dae/integrator/implicit_methods.h>
@@ -203,7 +204,17 @@ TEST(EnergyMomentum, RefusesWhatIsPrescribed) {
   const Scene driven = equations::example("driven");
   EXPECT_TRUE(
       equations::says(equations::thrown<std::invalid_argument>([&] { run(driven, 0.01, 1); }),
-                      "expected no prescribed motion"));
+                      "found the drive of joint 'O', and it does work too; expected no prescribed "
+                      "motion"));
+  const Scene formulas = parse_scene(
+      "[lagrangian]\ncoordinates = [\"x\", \"y\"]\nposition = [1, 0]\n"
+      "kinetic = \"0.5*(x.dot^2 + y.dot^2)\"\n"
+      "constraints = [{ name = \"still\", equation = \"y\" },\n"
+      "               { name = \"wall\", equation = \"x - cos(t)\" }]\n");
+  EXPECT_TRUE(equations::says(
+      equations::thrown<std::invalid_argument>([&] { run(formulas, 0.01, 1); }),
+      "found constraint 'wall', which takes the time, and it does work too; expected no "
+      "prescribed motion"));
 }
 
 // The last equation is one of energies, of which α is a small part: Newton's method by differences
