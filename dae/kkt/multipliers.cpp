@@ -14,6 +14,7 @@ UniqueMultipliers::UniqueMultipliers(const Mechanism& mechanism, Evaluation<doub
       e_(e),
       solver_(solver),
       tells_(mechanism.solver().filters_pivots()),
+      units_(LoopUnits(mechanism).equations),
       centre_(static_cast<std::size_t>(mechanism.m())),
       moved_(centre_.size()),
       udot_(static_cast<std::size_t>(mechanism.nv())),
@@ -29,12 +30,15 @@ const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, cons
   unique_.assign(centre_.size(), true);
   idle_.clear();
   if (tells_ && solver_.pivots().faded == 0) return unique_;
-  // Multipliers count as accelerations, λ_i W_ii, so that forces and moments compare.
+  // Multipliers count as accelerations, λ_i W_ii, in the units D_i of the rows [1/s²]: lengths of
+  // the scene and radians, so that forces and moments compare.
   e_.place(t, q);
-  const std::vector<double> scale = row_scales(mechanism_, e_);
+  std::vector<double> scale = row_scales(mechanism_, e_);
   double largest = 0;
-  for (std::size_t i = 0; i < scale.size(); ++i)
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    scale[i] /= units_[static_cast<Eigen::Index>(i)];
     largest = std::max(largest, std::abs(lambda[i]) * scale[i]);
+  }
   if (!(largest > 0)) largest = 1;
   for (std::size_t i = 0; i < scale.size(); ++i) centre_[i] = direction_[i] * largest / scale[i];
   if (!solver_.acceleration(t, q, u, centre_.data(), 0, 0, udot_.data(), moved_.data())) {

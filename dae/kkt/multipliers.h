@@ -13,6 +13,7 @@
 
 #include <momenta/dae/kkt/loop_solver.h>
 
+#include <Eigen/Core>
 #include <vector>
 
 namespace momenta {
@@ -33,7 +34,8 @@ class UniqueMultipliers {
   const Mechanism& mechanism_;
   Evaluation<double>& e_;
   LoopSolver& solver_;
-  bool tells_;  ///< the solver knows when rows have faded
+  bool tells_;             ///< the solver knows when rows have faded
+  Eigen::VectorXd units_;  ///< LoopUnits::equations (m)
   std::vector<double> direction_, centre_, moved_, udot_, idle_;
   std::vector<bool> unique_;
 };

@@ -1,3 +1,4 @@
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/run/force_columns.h>
 #include <momenta/dae/run/run_form.h>
 
@@ -31,6 +32,12 @@ ForceColumns::ForceColumns(const Mechanism& mechanism, Evaluation<double>& e, Lo
       without_(efforts_.size()) {
   if (solver) multipliers_.emplace(mechanism, e, *solver);
   if (reactions_ || !efforts_.empty()) sweep_ = make_wrench_sweep(mechanism);
+  if (!multipliers_ || efforts_.empty()) return;
+  row_units_ = LoopUnits(mechanism).equations;
+  effort_units_.assign(efforts_.size(), 1);
+  for (const Tree::Body& b : mechanism.tree().bodies)
+    if (b.drive >= 0 && b.kind == JointKind::prismatic)
+      effort_units_[static_cast<std::size_t>(b.drive)] = length_of(mechanism.scene());
 }
 
 void ForceColumns::solve(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) {
@@ -75,15 +82,17 @@ void ForceColumns::append_efforts(std::vector<double>& row, std::vector<std::siz
   efforts_.assign(efforts_.size(), not_there);
   if (found_) sweep_->efforts(efforts_.data());
   if (idle_.size() > 0) {
-    // Efforts are affine in λ: the part of the idle multipliers, with nothing moving.
+    // Efforts are affine in λ: the part of the idle multipliers, with nothing moving. Forces times
+    // lengths of the scene compare with moments [J].
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(lambda_.size());
     sweep_->move(t_, q_.data(), rest_.data(), rest_.data(), none.data());
     sweep_->efforts(without_.data());
     sweep_->move(t_, q_.data(), rest_.data(), rest_.data(), idle_.data());
     sweep_->efforts(with_.data());
-    const double largest = idle_.cwiseAbs().maxCoeff();
+    const double largest = idle_.cwiseProduct(row_units_).cwiseAbs().maxCoeff();
     for (std::size_t i = 0; i < efforts_.size(); ++i)
-      if (std::abs(with_[i] - without_[i]) > rounding * (largest + std::abs(without_[i]))) {
+      if (effort_units_[i] * std::abs(with_[i] - without_[i]) >
+          rounding * (largest + effort_units_[i] * std::abs(without_[i]))) {
         not_unique.push_back(row.size() + i);
         efforts_[i] = not_there;
       }

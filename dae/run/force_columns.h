@@ -52,6 +52,8 @@ class ForceColumns {
   Eigen::VectorXd q_, u_, udot_, lambda_, rest_, idle_;
   std::vector<bool> unique_rows_;
   std::vector<double> efforts_, with_, without_;
+  Eigen::VectorXd row_units_;         ///< LoopUnits::equations (m)
+  std::vector<double> effort_units_;  ///< by drive: a length of the scene, or a radian
 };
 
 // Columns that a reference may have: the trajectory's with reactions, and behind them

@@ -163,8 +163,10 @@ std::vector<SimplerLoop> simpler_loops(const Mechanism& mechanism, const MatrixX
 }  // namespace
 
 bool RankReport::unique(int row) const {
-  for (Eigen::Index k = 0; k < idle.cols(); ++k)
-    if (std::abs(idle(row, k)) > takes_part * idle.col(k).cwiseAbs().maxCoeff()) return false;
+  for (Eigen::Index k = 0; k < idle.cols(); ++k) {
+    const VectorXd work = idle.col(k).cwiseProduct(units);  // forces and moments compare
+    if (std::abs(work[row]) > takes_part * work.cwiseAbs().maxCoeff()) return false;
+  }
   return true;
 }
 
@@ -222,6 +224,7 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   std::sort(report.dependencies.begin(), report.dependencies.end(),
             [](const Dependency& a, const Dependency& b) { return a.row < b.row; });
   report.idle = factor.asDiagonal() * own.left;
+  report.units = factor.cwiseInverse();
 
   std::vector<bool> involved(static_cast<std::size_t>(mechanism.m()));
   for (Eigen::Index k = 0; k < left_elsewhere.cols(); ++k)

@@ -40,6 +40,7 @@ struct RankReport {
   std::vector<SimplerLoop> simpler;      ///< changes that together keep the ranks nearby
   /// Forces of loops that move nothing, m × dependencies; λ and σ are determined but for these.
   Eigen::MatrixXd idle;
+  Eigen::VectorXd units;  ///< of the rows (m), LoopUnits::equations
 
   bool singular_here() const { return rank < rank_nearby; }
   /// Whether a row's multiplier is unique.

@@ -11,15 +11,18 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/kkt/solver_choice.h>
 #include <momenta/dae/output/chart.h>
 #include <momenta/dae/output/json.h>
 #include <momenta/dae/run/measure/rank.h>
 #include <momenta/dae/run/run_form.h>
+#include <momenta/dae/study/extremes.h>
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <random>
 
 namespace momenta::dae_multipliers {
@@ -93,6 +96,50 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
   EXPECT_GE(shared, 10);
   EXPECT_GE(determined, 9);
   EXPECT_GE(both, 10);
+}
+
+const Units other_units[] = {{1e-6, 1, 1},    {1e6, 1, 1},       {1, 1e-3, 1},    {1, 1, 1e6},
+                             {1e-6, 1e3, 10}, {1e6, 1e-2, 1e-4}, {1e-4, 1e2, 1e3}};
+
+TEST(UniqueMultipliers, AreTheSameInAllUnits) {
+  const Scene slide = parse_scene(R"(
+gravity = [0, 0, -9.81]
+[[body]]
+name = "block"
+mass = 0.1
+inertia = [0.02246, 0.02987, 0.02565, 0.0006046, -0.004856, 0.001354]
+com = [0.1, 0.2, 0]
+[[joint]]
+name = "J"
+kind = "universal"
+child = "block"
+origin = { parent = [0.081, -0.441, -1.116], child = [-0.215, 0.082, -0.257] }
+axis = "-y"
+axis2 = [-2.274, 1.152, 1.029]
+[[loop]]
+name = "L"
+kind = "prismatic"
+child = "block"
+axis = [0.5849619959566039, -0.6831211477240658, -0.43722415397438996]
+origin = { parent = [0.6290501844800691, -0.2845576447349991, -0.9217900208134625], child = [0.035, 0.21, 0.201] }
+rotation = { quaternion = [0.889195926530068, 0.045035369072962315, 0.4512919510510779, -0.060315791392531654] }
+)");
+  int shared = 0, compared = 0;
+  for (const Scene& scene :
+       {slide, example("extremes/three_cranks.toml"), example("four_bar/scene.toml"), bricard(),
+        driven_scissor(LoopKind::prismatic)}) {
+    const Mechanism as_written(scene, {.algebra = Algebra::spatial});
+    const auto expected = unique_by_centres(as_written, equations::start_of(as_written));
+    shared += std::count(expected.begin(), expected.end(), false) > 0;
+    for (const Units& units : other_units) {
+      const Mechanism mechanism(in_units(scene, units), {.algebra = Algebra::spatial});
+      EXPECT_EQ(unique_by_centres(mechanism, equations::start_of(mechanism)), expected)
+          << scene.name << " " << units.length << " " << units.time << " " << units.mass;
+      ++compared;
+    }
+  }
+  EXPECT_EQ(shared, 5);
+  EXPECT_EQ(compared, 35);
 }
 
 /// What drives a mechanism without freedoms is known from virtual work: λ ẋ + dE/dt = 0.
@@ -232,6 +279,34 @@ TEST(UniqueMultipliers, AreToldAlongARun) {
   ASSERT_EQ(json.size(), 3u);
   EXPECT_EQ(json[0]["column"], "B.lambda3 [N]");
   EXPECT_EQ(json[0]["samples"], 21);
+}
+
+/// Two drives hold a square that one would hold: neither effort is unique, however small it is.
+TEST(UniqueMultipliers, EffortsOfDrivesAreToldInAllUnits) {
+  constexpr double upright = std::numbers::pi / 2;
+  Scene square;
+  square.gravity = {0, -9.81, 0};
+  square.bodies = {rod("crank", 0.1), rod("coupler", 0.1), rod("rocker", 0.1)};
+  square.joints = {hinge("O", "ground", "crank", {0, 0, 0}, upright),
+                   hinge("A", "crank", "coupler", {1, 0, 0}, -upright),
+                   hinge("C", "ground", "rocker", {1, 0, 0}, upright)};
+  square.loops = {
+      equations::make_loop(LoopKind::revolute, "B", "coupler", "rocker", {1, 0, 0}, {1, 0, 0})};
+  for (const char* joint : {"O", "C"}) {
+    DriveSpec drive;
+    drive.joint = joint;
+    drive.kind = "polynomial";
+    drive.coefficients = {upright};
+    square.drives.push_back(drive);
+  }
+  for (const double length : {1.0, 1e-8, 1e8}) {
+    const Mechanism mechanism(in_units(square, {.length = length}));
+    const RunResult run = run_of(mechanism, "momentum", 0.1, 1);
+    ASSERT_EQ(run.status, "done") << run.reason;
+    int told = 0;
+    for (const auto& u : run.undetermined) told += u.column.find(".effort") != std::string::npos;
+    EXPECT_EQ(told, 2) << length;
+  }
 }
 
 TEST(UniqueMultipliers, OfAPoseOnTheWayAreToldThere) {

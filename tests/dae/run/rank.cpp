@@ -166,6 +166,19 @@ TEST(Rank, UnitsAndSizesDoNotMatter) {
     EXPECT_EQ(r.rank, 4) << length;
     EXPECT_EQ(r.rank_nearby, 4) << length;
   }
+  // Nor do they decide which multipliers are unique.
+  std::vector<bool> expected;
+  for (const double length : {1.0, 1e-8, 1e8}) {
+    const Mechanism mechanism(in_units(bricard(), {.length = length}));
+    Start start;
+    start.q.setZero(mechanism.nq());
+    start.u.setZero(mechanism.nv());
+    const RankReport r = rank_report(mechanism, start);
+    std::vector<bool> unique;
+    for (int row = 0; row < mechanism.m(); ++row) unique.push_back(r.unique(row));
+    if (length == 1) expected = unique;
+    EXPECT_EQ(unique, expected) << length;
+  }
 }
 
 Reactions marked(const Mechanism& mechanism, const Start& s) {
