@@ -143,7 +143,18 @@ double ClosedMotion::missed(const VectorXd& wanted, const VectorXd& got, int* wo
   return largest;
 }
 
-void ClosedMotion::refuse(double t, const VectorXd& missing, int worst, const std::string& unit) {
+/// The coordinate that a rate moves; where the two differ in kind, the joint.
+Column ClosedMotion::coordinate_of(int rate) const {
+  const std::vector<Column> coordinates = mechanism_.coordinate_columns();
+  for (const Tree::Body& b : mechanism_.tree().bodies) {
+    if (rate < b.u || rate >= b.u + b.nv) continue;
+    if (!b.has_quaternion()) return coordinates[static_cast<std::size_t>(b.q + rate - b.u)];
+    return {b.joint, b.is_length(rate - b.u) ? "m" : "rad"};
+  }
+  return coordinates[static_cast<std::size_t>(rate)];  // of formulas
+}
+
+void ClosedMotion::refuse(double t, const VectorXd& missing, int worst, const Column& column) {
   const LoopIsland& island = islands_.of(worst);
   VectorXd pull = VectorXd::Zero(static_cast<Eigen::Index>(island.rates.size()));
   for (std::size_t i = 0; i < island.rates.size(); ++i)
@@ -156,10 +167,9 @@ void ClosedMotion::refuse(double t, const VectorXd& missing, int worst, const st
   char apart[32];
   std::snprintf(apart, sizeof apart, "%.3g",
                 std::abs(missing[worst]) * loops_.units().rates[worst]);
-  throw SceneError(at(t) + "the " + loop_word(mechanism_) +
-                   "s cannot follow the motion: " + loop_word(mechanism_) + " '" + loop +
-                   "' keeps '" + rates_[static_cast<std::size_t>(worst)].name + "' " + apart + " " +
-                   unit + " from what is given; expected a motion that the " +
+  throw SceneError(at(t) + "the " + loop_word(mechanism_) + "s cannot follow the motion: " +
+                   loop_word(mechanism_) + " '" + loop + "' keeps '" + column.name + "' " + apart +
+                   " " + column.unit + " from what is given; expected a motion that the " +
                    loop_word(mechanism_) + "s allow");
 }
 
@@ -168,13 +178,23 @@ VectorXd ClosedMotion::gap(double t, const VectorXd& q) {
   return loops_.gap(t, q) - contradiction_.open;
 }
 
-/// Newton's method; false where it fails.
+/// Newton's method; false where it fails. On its way equations that depend on others at every
+/// closed pose do so but for the gap, and would hold what is given away from its target. So the
+/// rank is that of the pose it starts from, which is closed; unless it is singular there, when the
+/// equations left out stay open.
 bool ClosedMotion::close(double t, const VectorXd& target, VectorXd& q) {
+  const VectorXd start = q;
+  if (close(t, target, true, q)) return true;
+  q = start;
+  return close(t, target, false, q);
+}
+
+bool ClosedMotion::close(double t, const VectorXd& target, bool rank_kept, VectorXd& q) {
   for (int k = 0; k < most_corrections; ++k) {
     const VectorXd gap = this->gap(t, q);
     const double open = gap.size() > 0 ? gap.cwiseAbs().maxCoeff() : 0;
     if (!std::isfinite(open)) return false;
-    islands_.factor(loops_, contradiction_.pivot);
+    islands_.factor(loops_, contradiction_.pivot, rank_kept && k > 0);
     VectorXd step = nearest(-gap, way_to(q, target), t);
     const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
     if (!std::isfinite(length)) return false;
@@ -220,10 +240,7 @@ void ClosedMotion::go_to(std::size_t number, VectorXd& q, VectorXd& u, VectorXd&
   const VectorXd none = VectorXd::Zero(mechanism_.nv());
   const VectorXd left = way_to(q_, row.q);
   const double gap = missed(left, none, &worst);
-  if (gap > within_)
-    refuse(t, left, worst,
-           rates_[static_cast<std::size_t>(worst)].unit.substr(
-               0, rates_[static_cast<std::size_t>(worst)].unit.find("/s")));
+  if (gap > within_) refuse(t, left, worst, coordinate_of(worst));
   gap_ = std::max(gap_, gap);
 
   // Rates, with nonholonomic rows; then accelerations.
@@ -240,7 +257,7 @@ void ClosedMotion::go_to(std::size_t number, VectorXd& q, VectorXd& u, VectorXd&
   const double rate_gap = missed(v, scaled_rates, &worst);
   const double largest = scaled_rates.size() > 0 ? scaled_rates.cwiseAbs().maxCoeff() : 0;
   if (rate_gap > 1e-3 * (largest + std::abs(v[worst])) && rate_gap > within_)
-    refuse(t, v - scaled_rates, worst, rates_[static_cast<std::size_t>(worst)].unit);
+    refuse(t, v - scaled_rates, worst, rates_[static_cast<std::size_t>(worst)]);
   u = scaled_rates.cwiseProduct(unit);
   e.move(u.data());
   e.joint_forces(q_.data(), u.data(), none.data(), nullptr, force.data());

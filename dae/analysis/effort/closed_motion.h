@@ -39,11 +39,13 @@ class ClosedMotion {
  private:
   Eigen::VectorXd gap(double t, const Eigen::VectorXd& q);
   bool close(double t, const Eigen::VectorXd& target, Eigen::VectorXd& q);
+  bool close(double t, const Eigen::VectorXd& target, bool rank_kept, Eigen::VectorXd& q);
   Eigen::VectorXd nearest(const Eigen::VectorXd& right, const Eigen::VectorXd& wanted, double t);
   Eigen::VectorXd way_to(const Eigen::VectorXd& q, const Eigen::VectorXd& target);
   double missed(const Eigen::VectorXd& wanted, const Eigen::VectorXd& got, int* worst) const;
+  Column coordinate_of(int rate) const;
   [[noreturn]] void refuse(double t, const Eigen::VectorXd& missing, int worst,
-                           const std::string& unit);
+                           const Column& column);
   [[noreturn]] void refuse_open(double t, const LoopIsland& island);
   std::string at(double t) const;
 

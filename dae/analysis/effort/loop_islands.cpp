@@ -1,6 +1,7 @@
 #include <momenta/dae/algebra/dense/decompositions.h>
 #include <momenta/dae/analysis/effort/loop_islands.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace momenta {
@@ -92,7 +93,7 @@ LoopIslands::LoopIslands(const Mechanism& mechanism)
   }
 }
 
-void LoopIslands::factor(ScaledLoops& loops, double pivot) {
+void LoopIslands::factor(ScaledLoops& loops, double pivot, bool rank_kept) {
   if (row_.empty()) return;
   const std::vector<double> entries = loops.jacobian();
   std::vector<Eigen::MatrixXd> transposed(islands_.size());
@@ -111,7 +112,9 @@ void LoopIslands::factor(ScaledLoops& loops, double pivot) {
     if (island.rows.empty()) continue;
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(transposed[k]);
     qr.setThreshold(pivot);
-    const Eigen::Index n = transposed[k].rows(), rank = qr.rank();
+    const Eigen::Index n = transposed[k].rows(),
+                       rank =
+                           rank_kept ? std::min<Eigen::Index>(qr.rank(), island.rank()) : qr.rank();
     const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
     island.Y = Q.leftCols(rank);
     island.N = Q.rightCols(n - rank);

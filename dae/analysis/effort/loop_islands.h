@@ -45,9 +45,9 @@ class LoopIslands {
   /// The mechanism must outlive it. O(bodies + length of all loops)
   explicit LoopIslands(const Mechanism& mechanism);
 
-  /// J, Y, N and R at the last pose of `loops`; pivots above this part of the largest count. Cost:
-  /// a dense QR of each island.
-  void factor(ScaledLoops& loops, double pivot = independent_pivot);
+  /// J, Y, N and R at the last pose of `loops`; pivots above this part of the largest count, with
+  /// `rank_kept` no more of an island than at the last factor(). Cost: a dense QR of each island.
+  void factor(ScaledLoops& loops, double pivot = independent_pivot, bool rank_kept = false);
 
   const std::vector<LoopIsland>& all() const { return islands_; }
   const LoopIsland& of(int rate) const {

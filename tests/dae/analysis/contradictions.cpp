@@ -1,6 +1,7 @@
 // Redundant equations whose numbers a file has rounded: every verb takes the mechanism for what it
 // is, as far as the numbers agree.
 
+#include "equations/parts.h"
 #include "equations/swept_four_bar.h"
 
 #include <gtest/gtest.h>
@@ -107,6 +108,29 @@ TEST(Contradictions, BennettsLinkageGoesRound) {
     const MoveResult r = moved(bennett(count), "J0");
     EXPECT_EQ(r.end, MoveResult::End::closed) << count << r.why;
     EXPECT_EQ(r.poses.size(), exact.poses.size()) << count;
+  }
+}
+
+/// Three of five equations follow from the others where the loop is closed, and nowhere else: by
+/// whatever steps, the joints follow sin(θ₀/2) sin(θ₁/2) = K cos(θ₀/2) cos(θ₁/2).
+TEST(Contradictions, BennettsLinkageFollowsItsDrive) {
+  const Mechanism mechanism(bennett(17));
+  const double K = std::sin(0.85) / std::sin(0.25);
+  for (const int samples : {40, 57, 100, 400}) {
+    EffortRequest request;
+    request.motion.drives = {equations::polynomial("J0", {0.8, 1, 0.3})};
+    for (int i = 0; i <= samples; ++i) request.motion.times.push_back(2.0 * i / samples);
+    const EffortResult r = effort(mechanism, request);
+    ASSERT_EQ(r.rows.size(), request.motion.times.size());
+    for (const EffortRow& row : r.rows) {
+      EXPECT_NEAR(row.q[0], 0.8 + row.t + 0.3 * row.t * row.t, 1e-12) << samples;
+      EXPECT_NEAR(row.u[0], 1 + 0.6 * row.t, 1e-10) << samples;
+      const double a = row.q[0] / 2, b = row.q[1] / 2;
+      EXPECT_NEAR(std::sin(a) * std::sin(b), K * std::cos(a) * std::cos(b), 1e-11) << samples;
+      EXPECT_NEAR((std::cos(a) * std::sin(b) + K * std::sin(a) * std::cos(b)) * row.u[0],
+                  -(std::sin(a) * std::cos(b) + K * std::cos(a) * std::sin(b)) * row.u[1], 1e-9)
+          << samples;
+    }
   }
 }
 

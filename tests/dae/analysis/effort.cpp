@@ -521,6 +521,8 @@ TEST(Effort, SaysWhatIsAmiss) {
   table.motion.table = &apart;
   has(equations::thrown<SceneError>([&] { effort(open, table); }),
       "the loops cannot follow the motion: loop 'B' keeps '");
+  has(equations::thrown<SceneError>([&] { effort(open, table); }), ".q' ");
+  has(equations::thrown<SceneError>([&] { effort(open, table); }), " rad from what is given");
   table.within = 1e-3;
   const EffortResult let_pass = effort(open, table);
   EXPECT_GT(let_pass.gap, 1e-5);
