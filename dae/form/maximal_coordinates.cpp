@@ -33,7 +33,9 @@ class MaximalCoordinates final : public AccelerationForm {
       : AccelerationForm("maximal-coordinates", mechanism, options, start,
                          feedback_of(mechanism, options, start)),
         feedback_(feedback_of(mechanism, options, start)) {
-    if (!mechanism.scene().lagrangian) solver_ = make_maximal_solver(mechanism, *e_);
+    if (mechanism.scene().lagrangian) return;
+    solver_ = make_maximal_solver(mechanism, *e_);
+    solves_itself_ = true;
   }
 
   SingularityHandling wanted_handling() const override { return SingularityHandling::none; }

@@ -59,7 +59,7 @@ bool OdeForm::solver_failed(double t, const double* q, const std::string& what) 
   e_->place(t, q);
   if (const std::string lost = e_->lost_loop(); !lost.empty()) return fail_at(t, lost);
   if (solver_->singular_joint() >= 0)
-    return fail_at(t, no_inertia(mechanism_, solver_->singular_joint(), t, q));
+    return fail_at(t, no_inertia(mechanism_, solver_->singular_joint(), t, q, solves_itself_));
   return fail_at(t, what + " is not finite");
 }
 

@@ -126,7 +126,8 @@ class OdeForm : public Form, public OdeSystem {
   const Mechanism& mechanism_;
   FormOptions options_;
   std::unique_ptr<Evaluation<double>> e_;
-  std::unique_ptr<LoopSolver> solver_;         ///< null without loops
+  std::unique_ptr<LoopSolver> solver_;  ///< null without loops
+  bool solves_itself_ = false;          ///< solver_ is the form's, not the mechanism's plan's
   std::unique_ptr<BearingFriction> friction_;  ///< null without bearings
   std::unique_ptr<LocalJacobian> solved_;      ///< see local_jacobian
   std::vector<double> u_, multipliers_, centre_, delta_, work_, correction_;

@@ -110,7 +110,7 @@ SolverChoice::SolverChoice(const Mechanism& mechanism)
   if (scene.lagrangian && asked == KktChoice::automatic && light_.empty()) return;
   if (asked == KktChoice::sweeps)
     throw SceneError(scene.where({}) + "the sweeps were asked to carry the loops, but " + reason_ +
-                     "; expected --kkt sparse" + (far_apart ? "" : " or dense"));
+                     "; expected --kkt sparse" + (light_.empty() ? " or dense" : ""));
   kkt_ = KktChoice::sparse;
   dense_ = false;
 }

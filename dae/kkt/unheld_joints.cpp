@@ -200,12 +200,17 @@ std::string light_before_loops(const Mechanism& mechanism, int rate) {
     const Tree::Body& b = mechanism.tree().bodies[k];
     if (rate >= b.u && rate < b.u + b.nv)
       return mechanism.tree().joint_in_words(static_cast<int>(k)) +
-             " has no inertia before its loops close";
+             (b.of_loop ? " has no inertia before the other loops close"
+                        : " has no inertia before its loops close");
   }
   return "";
 }
 
-std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q) {
+std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q,
+                       bool by_form) {
+  // KLU, which solves (7) all the same, is chosen at the start, and not by a form of its own.
+  const bool solved_by_klu = mechanism.m() > 0 && !mechanism.solver().leaves_first();
+  const bool asked_dense = mechanism.m() > 0 && mechanism.solver().dense();
   if (mechanism.scene().lagrangian) {
     if (const std::string free =
             free_coordinate(mechanism.lagrangian(), *mechanism.scene().lagrangian);
@@ -217,15 +222,16 @@ std::string no_inertia(const Mechanism& mechanism, int rate, double t, const dou
              "constraints that hold every coordinate without inertia";
     return light_before_loops(mechanism, rate) +
            "; expected a mass matrix that is positive definite" +
-           (mechanism.m() > 0 && mechanism.solver().dense()
-                ? ", or --kkt sparse where constraints hold it"
-                : "");
+           (solved_by_klu && asked_dense ? ", or --kkt sparse where constraints hold it" : "");
   }
   const auto e = mechanism.evaluation<double>();
   const UnheldJoints unheld = unheld_joints(mechanism, *e, t, q, true, rate);
   if (!unheld.joints.empty()) return in_words(mechanism, unheld);
-  return rate < 0 ? "its equations overflow; expected smaller numbers"
-                  : light_before_loops(mechanism, rate) + "; expected --kkt sparse";
+  if (rate < 0) return "its equations overflow; expected smaller numbers";
+  return light_before_loops(mechanism, rate) + "; expected " +
+         (solved_by_klu && by_form       ? "another form"
+          : solved_by_klu && asked_dense ? "--kkt sparse"
+                                         : "a mass or a rotor's inertia there");
 }
 
 }  // namespace momenta

@@ -52,10 +52,13 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
 void blank(const UnheldJoints& unheld, Eigen::VectorXd& x);
 
 /// Why a solution of (7) failed at (t, q): one sentence naming the joints that neither inertia nor
-/// a loop holds. `rate`: the place in u at which it failed; −1: not known.
-std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q);
+/// a loop holds, or what solves it where loops hold them. `rate`: the place in u at which it
+/// failed; −1: not known. `by_form`: the form has a solver of its own. Cost: as Mechanism::solver()
+std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q,
+                       bool by_form = false);
 
-/// "joint 'A' has no inertia before its loops close", for the joint at place `rate` in u.
+/// "joint 'A' has no inertia before its loops close", for the joint at place `rate` in u; "loop 'B'
+/// has no inertia before the other loops close" for one that was a loop.
 std::string light_before_loops(const Mechanism& mechanism, int rate);
 
 }  // namespace momenta

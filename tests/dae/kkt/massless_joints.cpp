@@ -183,6 +183,21 @@ TEST(MasslessJoints, SixAreNamedAndTheOthersCounted) {
                 why);
 }
 
+TEST(MasslessJoints, OnesThatWereLoopsAreCalledSo) {
+  Scene scene = arm();
+  add_finger(scene, "tip", "arm", Vector3d::UnitX());
+  scene.joints.back().of_loop = true;
+  const auto told = [&] {
+    OpenChain chain(scene);
+    VectorXd udot(chain.nv());
+    EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
+    return chain.failure();
+  };
+  EXPECT_TRUE(equations::says(told(), "loop 'tip' has no inertia: "));
+  add_finger(scene, "bare", "arm");
+  EXPECT_TRUE(equations::says(told(), "loop 'tip', joint 'bare' have no inertia: "));
+}
+
 TEST(MasslessJoints, WhatOthersMoveAloneIsNoInertia) {
   Scene scene = arm();  // two joints on one axis, nothing between them
   add_finger(scene, "inner", "arm", Vector3d::UnitX());
@@ -375,6 +390,78 @@ TEST(MasslessJoints, WhatLoopsHoldIsEvaluatedAsItRuns) {
   moving.p = s.p;
   moving.p_given.assign(3, true);
   EXPECT_LT((evaluate_state(mechanism, moving).v - s.v).norm(), 1e-12);
+}
+
+/// A four-bar whose coupler and rocker have no mass: what is told to be expected runs, and what is
+/// named is a joint or a loop of the scene.
+TEST(MasslessJoints, WhatIsExpectedBeforeLoopsCloseRuns) {
+  const Scene scene = parse_scene(R"(
+gravity = [0, -9.81, 0]
+[[body]]
+name = "a"
+mass = 1
+com = [0.5, 0, 0]
+inertia = [0.01, 0.1, 0.1]
+[[body]]
+name = "b"
+mass = 0
+inertia = [0, 0, 0]
+[[body]]
+name = "c"
+mass = 0
+inertia = [0, 0, 0]
+[[joint]]
+name = "A"
+kind = "revolute"
+child = "a"
+position = 1.04047070433185
+velocity = 0.383981800936113
+[[joint]]
+name = "B"
+kind = "revolute"
+parent = "a"
+child = "b"
+origin = { parent = [1, 0, 0] }
+position = -0.747735492227825
+velocity = -0.439775009455546
+[[joint]]
+name = "C"
+kind = "revolute"
+child = "c"
+origin = { parent = [2, 0, 0] }
+position = 1.28649484128902
+velocity = 0.207696216971679
+[[loop]]
+name = "L"
+kind = "revolute"
+parent = "b"
+child = "c"
+origin = { parent = [2, 0, 0], child = [1.5, 0, 0] }
+)");
+  const auto run = [&](const char* form, KktChoice kkt) {
+    const Mechanism mechanism(scene, {.kkt = kkt});
+    RunRequest request;
+    request.settings.form = form;
+    request.settings.end_time = 0.1;
+    request.settings.samples = 2;
+    return run_form(mechanism, assemble(mechanism).start, request);
+  };
+  // A run cuts the scene elsewhere, unless it is asked for a matrix.
+  EXPECT_TRUE(equations::says(
+      run("maximal-coordinates", KktChoice::automatic).reason,
+      "loop 'L' has no inertia before the other loops close; expected another form"));
+  EXPECT_TRUE(
+      equations::says(run("maximal-coordinates", KktChoice::sparse).reason,
+                      "joint 'C' has no inertia before its loops close; expected another form"));
+  EXPECT_EQ(run("acceleration", KktChoice::automatic).status, "done");
+  const auto refused = [&](KktChoice kkt) {
+    return equations::thrown<SceneError>([&] { run("acceleration", kkt); });
+  };
+  for (const KktChoice kkt : {KktChoice::dense, KktChoice::sweeps}) {
+    EXPECT_TRUE(equations::says(refused(kkt), "; expected --kkt sparse"));
+    EXPECT_EQ(refused(kkt).find("or dense"), std::string::npos) << refused(kkt);
+  }
+  EXPECT_EQ(run("acceleration", KktChoice::sparse).status, "done");
 }
 
 /// Random trees and loops some of whose bodies have no mass: the joints named are those of the null
