@@ -13,6 +13,8 @@ namespace momenta::reading {
 
 namespace {
 
+constexpr std::array<std::string_view, 4> flag_words{"false", "true", "0", "1"};  // odd: true
+
 bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
@@ -100,8 +102,7 @@ std::vector<double> Node::content_numbers(std::size_t count) const {
   return all;
 }
 bool Node::content_flag() const {
-  constexpr std::array<std::string_view, 4> words{"false", "true", "0", "1"};
-  return content_word(words) % 2 == 1;
+  return content_word(flag_words) % 2 == 1;
 }
 std::size_t Node::content_word(std::span<const std::string_view> words) const {
   return word_of(content(), words, "");
@@ -115,8 +116,7 @@ double Node::number(std::string_view attribute, double otherwise) const {
 }
 
 bool Node::flag(std::string_view attribute, bool otherwise) const {
-  constexpr std::array<std::string_view, 2> words{"false", "true"};
-  return word(attribute, words, otherwise ? 1 : 0) == 1;
+  return word(attribute, flag_words, otherwise ? 1 : 0) % 2 == 1;
 }
 
 Eigen::Vector3d Node::vector(std::string_view attribute) const {

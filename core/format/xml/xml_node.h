@@ -62,7 +62,7 @@ class Node {
   std::string text(std::string_view attribute, const std::string& otherwise) const;
   double number(std::string_view attribute) const;
   double number(std::string_view attribute, double otherwise) const;
-  bool flag(std::string_view attribute, bool otherwise) const;  ///< true or false
+  bool flag(std::string_view attribute, bool otherwise) const;  ///< true, false, 1 or 0
   std::vector<double> numbers(std::string_view attribute) const;
   std::vector<double> numbers(std::string_view attribute, std::size_t count) const;
   Eigen::Vector3d vector(std::string_view attribute) const;

@@ -257,8 +257,12 @@ TEST_F(Sdf, PosesInManyWords) {
          "<frame name='f' attached_to='other'><pose>" + "0.1 0.2 0.3 0 0 0" + "</pose></frame>"),
       at("<model name='inner'><pose>" + there + "</pose>" + link("a", "") + "</model>"),
       at(link("a", ""), " placement_frame='a'"),
+      at(link("a",
+              "<pose degrees='1'>0.1 0.2 0.3 22.918311805232932 28.647889756541161 "
+              "34.377467707849391</pose>")),
+      at(link("a", "<pose degrees='0'>" + there + "</pose>")),
   };
-  for (int i : {0, 1, 2, 4})
+  for (int i : {0, 1, 2, 4, 6, 7})
     for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(ways[i][k], expected[k], 1e-14) << i;
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(ways[3][k], expected[k], 1e-15);
   EXPECT_EQ(ways[5], (std::vector<double>{0, 0, 0, 1, 0, 0, 0}));
@@ -369,6 +373,8 @@ TEST_F(Sdf, WrongFiles) {
   wrong(link("b", "<pose>1 2 3 nan 0 0</pose>"), "<pose> has 'nan', expected finite numbers");
   wrong(link("b", "<pose rotation_format='quat_xyzw'>0 0 0 0 0 0 2</pose>"),
         "has a quaternion of norm 2, expected 1 within 1e-6");
+  wrong(link("b", "<pose degrees='yes'>0 0 0 0 0 0</pose>"),
+        "<pose> degrees is 'yes', expected one of: false, true, 0, 1");
   wrong(link("b", "<pose relative_to='c'/>"), "link 'b': <link> names 'c', expected a link, joint");
   wrong(link("b", "<pose relative_to='c'/>") + link("c", "<pose relative_to='b'/>"),
         "is relative to frames that are relative to each other in a cycle");
