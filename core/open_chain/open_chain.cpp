@@ -9,9 +9,10 @@ namespace {
 
 Tree checked_tree(const Scene& scene) {
   if (scene.lagrangian)
-    throw SceneError(scene.where(scene.lagrangian->at) +
-                     "lagrangian: an open chain needs bodies, expected a Mechanism for a system of "
-                     "formulas");
+    throw SceneError(
+        scene.where(scene.lagrangian->at) +
+        "lagrangian: an open chain needs bodies, expected a ClosedChain for a system of "
+        "formulas");
   if (!scene.loops.empty())
     throw SceneError(scene.where(scene.loops.front().at) + "loop '" + scene.loops.front().name +
                      "' closes the tree, but an open chain has no loops, expected a tree");

@@ -48,10 +48,11 @@ class LagrangianEvaluation final : public LagrangianRows<double> {
     if (!factorise()) return false;
     move(u);
     joint_forces(q, u, nullptr, nullptr, udot);
-    for (std::size_t i = 0; i < rest_.size(); ++i) udot[i] = -udot[i];
+    for (std::size_t i = 0; i < rest_.size(); ++i) udot[i] = (pushed_ ? pushed_[i] : 0) - udot[i];
     solve(udot);
     return all_finite(udot, rest_.size());
   }
+  void push(const double* tau) override { pushed_ = tau; }
   int singular_joint() const override { return singular_; }
 
   /// A Lagrangian has no points of bodies.
@@ -89,6 +90,7 @@ class LagrangianEvaluation final : public LagrangianRows<double> {
   std::vector<double> mass_, rest_;
   std::vector<std::size_t> diagonal_;
   int singular_ = -1;
+  const double* pushed_ = nullptr;
 };
 
 }  // namespace momenta

@@ -8,6 +8,7 @@
 #include <momenta/dae/run/state_values.h>
 #include <momenta/dae/topology/assembly/drive_reach.h>
 
+#include <Eigen/Cholesky>
 #include <optional>
 
 #include "bindings.h"
@@ -123,6 +124,17 @@ py::tuple kkt(Bench& b, double t, const In& q) {
 Vector inverse_mass_times(Bench& b, double t, const In& q, const In& x) {
   b.expect(t, &q, &x, "x");
   Vector result(b.mechanism->nv());
+  if (b.mechanism->scene().lagrangian) {
+    b.e->place(t, q.data());
+    const Eigen::MatrixXd mass = dense_mass(*b.mechanism, *b.e);
+    b.expect_finite(mass);
+    const Eigen::LLT<Eigen::MatrixXd> factor(mass);
+    if (factor.info() != Eigen::Success)
+      throw SceneError("the mass matrix is not positive definite at q, expected one that is");
+    result = factor.solve(x);
+    b.expect_finite(result);
+    return result;
+  }
   if (!b.chain().inverse_mass_times(t, q, x, result)) throw SceneError(b.chain().failure());
   return result;
 }
@@ -295,7 +307,8 @@ void bind_mechanism(py::module_& module) {
       .def("constraints", &constraints, "t"_a, "q"_a, "u"_a, "(Phi, Phidot), both (m).")
       .def("kkt", &kkt, "t"_a, "q"_a, "(M, Phi_q), dense: (nv, nv) and (m, nv).")
       .def("inverse_mass_times", &inverse_mass_times, "t"_a, "q"_a, "x"_a,
-           "M^-1 x (nv) of the tree, without its loops. O(bodies).")
+           "M^-1 x (nv) of the tree, without its loops: O(bodies). Of a Lagrangian without its "
+           "constraints, by Cholesky's factors of M: O(nv^3).")
       .def("energies", &energies, "t"_a, "q"_a, "u"_a, "(T, V) [J].")
       .def("evaluate", &evaluate, "t"_a = 0.0, "q"_a = py::none(), "v"_a = py::none(),
            "p"_a = py::none(),

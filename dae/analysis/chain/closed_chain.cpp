@@ -66,9 +66,7 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
                {nq(), nv(), nv(), m()});
   if (!given_finite(in.failure, t, {"q", q}, {"u", u})) return false;
   if (in.tree) return in.noted(in.tree->accelerations(t, q, u, udot), t, q.data());
-  return in.noted(in.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
-                                          lambda.data()),
-                  t, q.data()) &&
+  return in.acceleration(t, q.data(), u.data(), udot.data(), lambda.data()) &&
          found_finite(in.failure, udot, lambda);
 }
 
@@ -86,9 +84,9 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
   if (in.tree) {
     return in.noted(in.tree->accelerations(t, q, u, tau, udot), t, q.data());
   }
-  in.solver->push(tau.data());
+  in.push(tau.data());
   const bool ok = accelerations(t, q, u, udot, lambda);
-  in.solver->push(nullptr);
+  in.push(nullptr);
   return ok;
 }
 
@@ -97,7 +95,7 @@ bool ClosedChain::correct(double t, VectorRef q, VectorRef u) {
   Impl& in = *impl_;
   expect_sizes("correct", {{"q", q.size()}, {"u", u.size()}}, {nq(), nv()});
   if (!given_finite(in.failure, t, {"q", q}, {"u", u})) return false;
-  if (in.tree) return true;
+  if (m() == 0) return true;
   Eigen::VectorXd p(nv()), delta(nv()), qdot(nq()), moved(nq()), phi(m());
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {

@@ -14,9 +14,10 @@
 //
 // q: size nq, u and p: size nv, in the order of the joints; σ and λ: size m, in the order of the
 // loop equations; τ: size nv, joint forces in addition to those of the scene [N m or N]; SI units.
-// A scene may have no loops; then m = 0. p includes Φ_qᵀ σ, the impulses of the loops; momenta()
-// gives the p with σ = 0. Where loop equations are redundant or nearly so, σ and λ are not unique;
-// the weak directions fade (dae/kkt/kkt.h).
+// A scene may have no loops; then m = 0. It may be a Lagrangian, with constraints for loops. p
+// includes Φ_qᵀ σ, the impulses of the loops; momenta() gives the p with σ = 0. Where loop
+// equations are redundant or nearly so, σ and λ are not unique; the weak directions fade
+// (dae/kkt/kkt.h).
 //
 // One object serves one thread: it owns the workspace. No call allocates unless it returns an
 // object or works on many states. An argument of wrong size throws std::invalid_argument with one

@@ -18,11 +18,14 @@ namespace momenta {
 
 struct ClosedChain::Impl {
   Impl(const Scene& scene, const MechanismOptions& options)
-      : mechanism(scene, options), e(mechanism.evaluation<double>()), u(mechanism.nv()) {
+      : mechanism(scene, options),
+        e(mechanism.evaluation<double>()),
+        u(mechanism.nv()),
+        sigma(mechanism.m()),
+        unasked(mechanism.nv()) {
     if (mechanism.m() > 0) {
       solver = make_loop_solver(mechanism, *e);
-      sigma.resize(mechanism.m());
-    } else {
+    } else if (!scene.lagrangian) {
       tree = std::make_unique<OpenChain>(scene, options.algebra);
     }
   }
@@ -30,7 +33,9 @@ struct ClosedChain::Impl {
   /// Notes why the solver failed; returns `ok`.
   bool noted(bool ok, double t, const double* q) {
     if (!ok)
-      failure = tree ? tree->failure() : no_inertia(mechanism, solver->singular_joint(), t, q);
+      failure = tree ? tree->failure()
+                     : no_inertia(mechanism,
+                                  solver ? solver->singular_joint() : e->singular_joint(), t, q);
     return ok;
   }
   static std::span<const double> list(const double* x, int n) {
@@ -38,10 +43,24 @@ struct ClosedChain::Impl {
   }
   bool momentum(double t, const double* q, const double* p, double* rates, double* impulses,
                 double* pdot, double leak) {
-    return noted(solver->momentum(t, q, p, nullptr, fade_evaluation, leak, rates, impulses, pdot),
-                 t, q) &&
+    const bool ok =
+        solver ? solver->momentum(t, q, p, nullptr, fade_evaluation, leak, rates, impulses, pdot)
+               : e->open_momentum_rates(t, q, p, rates, pdot ? pdot : unasked.data());
+    return noted(ok, t, q) &&
            found_finite(failure, list(rates, mechanism.nv()), list(impulses, mechanism.m()),
                         list(pdot, pdot ? mechanism.nv() : 0));
+  }
+  bool acceleration(double t, const double* q, const double* rates, double* udot, double* lambda) {
+    return noted(solver ? solver->acceleration(t, q, rates, nullptr, 0, 0, udot, lambda)
+                        : e->open_accelerations(t, q, rates, udot),
+                 t, q);
+  }
+  /// Sets τ that acceleration() adds; null: none.
+  void push(const double* tau) {
+    if (solver)
+      solver->push(tau);
+    else
+      e->push(tau);
   }
   void place(double t, const ConstVectorRef& q, const ConstVectorRef& rates) {
     e->place(t, q.data());
@@ -73,8 +92,8 @@ struct ClosedChain::Impl {
   Mechanism mechanism;
   std::unique_ptr<Evaluation<double>> e;
   std::unique_ptr<LoopSolver> solver;                  ///< null without loops
-  std::unique_ptr<OpenChain> tree;                     ///< null with loops
-  Eigen::VectorXd u, sigma;                            // scratch
+  std::unique_ptr<OpenChain> tree;                     ///< null with loops or without bodies
+  Eigen::VectorXd u, sigma, unasked;                   // scratch
   std::vector<std::unique_ptr<LoopedSweeps>> batches;  ///< one for each thread
   std::string failure;
 };

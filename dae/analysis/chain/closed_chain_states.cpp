@@ -29,7 +29,7 @@ void expect_states(const char* call, double t, Eigen::Index count, int threads,
 
 bool ClosedChain::Impl::side_by_side(double t, const LoopedStates& all, bool of_momenta,
                                      double leak, int threads) {
-  if (all.count == 0 || mechanism.solver().kkt() != KktChoice::sweeps ||
+  if (all.count == 0 || !solver || mechanism.solver().kkt() != KktChoice::sweeps ||
       (mechanism.has_body_forces() && !mechanism.plan().planar) || mechanism.has_forces_apart())
     return false;
   if (batches.empty()) batches.push_back(mechanism.solver().sweeps());

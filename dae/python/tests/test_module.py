@@ -87,6 +87,26 @@ class Equations(unittest.TestCase):
         x = self.rng.normal(size=self.m.nv)
         np.testing.assert_allclose(M @ self.m.inverse_mass_times(0.0, self.start.q, x), x, atol=1e-10)
 
+    def test_lagrangians_with_and_without_constraints(self):
+        for name in "double_pendulum", "car_axis":
+            m = momenta.load(str(EXAMPLES / "lagrangian" / f"{name}.toml"))
+            q = m.assemble().q
+            u, x, tau = self.rng.normal(size=(3, m.nv))
+            M, J = m.kkt(0.0, q)
+            size = np.abs(M).max()
+            np.testing.assert_allclose(M @ m.inverse_mass_times(0.0, q, x), x, atol=1e-12)
+            udot, lam = m.accelerations(0.0, q, u, tau=tau)
+            still = m.accelerations(0.0, q, u)
+            np.testing.assert_allclose(M @ (udot - still[0]) + J.T @ (lam - still[1]), tau,
+                                       atol=1e-9 * (1 + size * np.abs(udot).max()))
+            all_udot, _ = m.accelerations_of_states(0.0, q[:, None], u[:, None], tau=tau[:, None])
+            np.testing.assert_allclose(all_udot[:, 0], udot, rtol=1e-12)
+            p = m.momenta(0.0, q, u)
+            qdot, pdot = m.rates_of_states(0.0, q[:, None], p[:, None])
+            one = m.momentum_rates(0.0, q, p)
+            np.testing.assert_allclose(qdot[:, 0], one[0], rtol=1e-12)
+            np.testing.assert_allclose(pdot[:, 0], one[2], rtol=1e-12)
+
     def test_constraints_hold_and_energy_is_that_of_the_mass_matrix(self):
         m, s = self.m, self.start
         phi, rate = m.constraints(0.0, s.q, s.u)

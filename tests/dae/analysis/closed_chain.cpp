@@ -9,6 +9,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/toml/parse_scene.h>
 #include <momenta/dae/analysis/chain/closed_chain.h>
 
 #include <cmath>
@@ -116,6 +117,54 @@ TEST(ClosedChain, SolvesTheEquationsAsTheyStand) {
     EXPECT_NEAR(e.hamiltonian, p.dot(s.u) - e.kinetic + e.potential, 1e-9 * (1 + e.kinetic));
     EXPECT_EQ(chain.reactions(s.t, s.q, s.u).loops.size(), scene.loops.size());
   }
+}
+
+/// Without constraints the mass matrix is factorised: what it gives meets the equations as they
+/// stand, with what L has linear in the rates, and many states are as one.
+TEST(ClosedChain, SolvesALagrangianWithoutConstraints) {
+  const Scene scene = parse_scene(R"toml(
+[lagrangian]
+coordinates = ["a", "b"]
+lagrangian = """(2 + cos(b))*a.dot^2 + (1 + cos(b))*a.dot*b.dot + b.dot^2/2
+  + 0.7*sin(3*t)*a.dot + b*a.dot + 4*cos(a) + cos(a + b)"""
+force = { a = "-0.3*a.dot" }
+)toml",
+                                  "typed.toml");
+  RandomTree random(9);
+  ClosedChain chain(scene);
+  const double t = 0.4;
+  constexpr int count = 5;
+  StateMatrix q(2, count), u(2, count), p = u, tau = u, qdot = q, pdot = u, udot = u;
+  StateMatrix lambda(0, count);
+  for (int i = 0; i < count; ++i) {
+    const VectorXd one_q = any(random, 2), one_u = any(random, 2), force = any(random, 2);
+    VectorXd one_p(2), rates(2), slopes(2), pushed(2), found(2), none(0), found_u(2);
+    const Eigen::MatrixXd M = chain.mass_matrix(t, one_q);
+    chain.momenta(t, one_q, one_u, one_p);
+    ASSERT_TRUE(chain.rates(t, one_q, one_p, rates, slopes)) << chain.failure();
+    ASSERT_TRUE(chain.velocities(t, one_q, one_p, found_u, none)) << chain.failure();
+    EXPECT_LT((rates - one_u).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_EQ(rates, found_u);
+    ASSERT_TRUE(chain.accelerations(t, one_q, one_u, rates, none)) << chain.failure();
+    ASSERT_TRUE(chain.accelerations(t, one_q, one_u, force, pushed, none)) << chain.failure();
+    EXPECT_LT((M * (pushed - rates) - force).cwiseAbs().maxCoeff(), 1e-13);
+    chain.joint_forces(t, one_q, one_u, pushed, none, found);
+    EXPECT_LT((found - force).cwiseAbs().maxCoeff(), 1e-13);
+    q.col(i) = one_q, u.col(i) = one_u, p.col(i) = one_p, tau.col(i) = force;
+  }
+  ASSERT_TRUE(chain.rates_of_states(t, q, p, tau, qdot, pdot)) << chain.failure();
+  ASSERT_TRUE(chain.accelerations_of_states(t, q, u, tau, udot, lambda, 2)) << chain.failure();
+  for (int i = 0; i < count; ++i) {
+    VectorXd one_qdot(2), one_pdot(2), one_udot(2), none(0);
+    ASSERT_TRUE(chain.rates(t, q.col(i), p.col(i), tau.col(i), one_qdot, one_pdot));
+    ASSERT_TRUE(chain.accelerations(t, q.col(i), u.col(i), tau.col(i), one_udot, none));
+    EXPECT_EQ(qdot.col(i), one_qdot);
+    EXPECT_EQ(pdot.col(i), one_pdot);
+    EXPECT_EQ(udot.col(i), one_udot);
+  }
+  VectorXd one_q = q.col(0), one_u = u.col(0);
+  EXPECT_TRUE(chain.correct(t, one_q, one_u));
+  EXPECT_EQ(one_q, q.col(0));
 }
 
 TEST(ClosedChain, ManyStatesAreAsOne) {
