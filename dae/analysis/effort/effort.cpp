@@ -233,6 +233,10 @@ Scene undriven(Scene scene, double t) {
 
 EffortResult effort(const Mechanism& mechanism, const EffortRequest& request) {
   refuse_bearings(mechanism.scene(), "inverse dynamics");
+  if (mechanism.nv() == 0)
+    throw SceneError(
+        mechanism.scene().where({}) +
+        "all joints are welds, so that no effort is needed; expected a joint that moves");
   if (!(request.within > 0) || !std::isfinite(request.within))
     throw SceneError("motion is to be followed within " + reading::digits(request.within) +
                      "; expected a number above zero");

@@ -48,6 +48,13 @@ class Search {
   }
 
   Assemblies by_homotopy() {
+    if (std::find(loops_.columns.begin(), loops_.columns.end(), true) == loops_.columns.end()) {
+      // No equation is left: one solution, the pose itself.
+      Assemblies own;
+      own.paths = {.paths = 1, .finite = 1, .real = 1};
+      add(own, own_, 1);
+      return own;
+    }
     const auto polynomials = loop_polynomials(mechanism_, t_, own_, held_rates());
     const HomotopyEnds ends =
         solve_by_homotopy(polynomials->system(), request_.seed, request_.threads);

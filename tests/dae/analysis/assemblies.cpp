@@ -89,6 +89,35 @@ TEST(Assemblies, AreRefusedWhereAFreedomIsLeft) {
   EXPECT_NE(says(wrong).find("'X' is not known"), std::string::npos) << says(wrong);
 }
 
+/// Where all is held or welded, by either way one pose is left, the mechanism's own.
+TEST(Assemblies, AreOneWhereNothingIsFree) {
+  Scene welded = closed_four_bar(1);
+  welded.loops.clear();
+  for (JointSpec& joint : welded.joints) {
+    joint.kind = JointKind::weld;
+    joint.position.clear();
+    joint.velocity.clear();
+  }
+  Scene swinging = closed_four_bar(1);
+  swinging.loops.clear();
+  for (const bool by_homotopy : {false, true}) {
+    AssembliesRequest request;
+    request.starts = 5;
+    request.by_homotopy = by_homotopy;
+    EXPECT_EQ(found_in(welded, request).all.size(), 1u);
+    request.hold = {"O", "A", "C"};
+    for (const Scene& scene : {closed_four_bar(1), swinging}) {
+      const Assemblies found = found_in(scene, request);
+      EXPECT_EQ(found.all.size(), 1u);
+      EXPECT_EQ(found.all[0].apart, 0);
+      if (by_homotopy) {
+        EXPECT_TRUE(found.paths->is_complete());
+        EXPECT_EQ(found.paths->real, 1);
+      }
+    }
+  }
+}
+
 /// A platform in the plane on three rods, x + R(φ) p_i at the distance l_i from b_i.
 struct PlanarPlatform {
   Vector2d b[3], p[3], place;

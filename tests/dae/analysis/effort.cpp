@@ -481,6 +481,22 @@ TEST(Effort, SaysWhatIsAmiss) {
       "no actuator holds the motion of 'M.u' (1)");
   held.actuated = {"O", "M"};
   EXPECT_LT(residue(undriven(shaken), along_drives(shaken, 1, held)), 1e-12);
+  Scene welded = bars;
+  welded.loops.clear();
+  welded.drives.clear();
+  for (JointSpec& joint : welded.joints) {
+    joint.kind = JointKind::weld;
+    joint.position.clear();
+    joint.velocity.clear();
+  }
+  for (const std::vector<std::string>& actuated : {{}, std::vector<std::string>{"O"}}) {
+    EffortRequest still;
+    still.motion.poses_alone = true;
+    still.motion.times = {0};
+    still.actuated = actuated;
+    has(equations::thrown<SceneError>([&] { effort(Mechanism(welded), still); }),
+        "all joints are welds, so that no effort is needed; expected a joint that moves");
+  }
   EffortRequest wrong;
   wrong.actuated = {"X"};
   has(equations::thrown<SceneError>([&] { along_drives(bars, 1, wrong); }),
