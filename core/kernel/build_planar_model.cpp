@@ -70,7 +70,7 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
   }
   for (const ForceSpec& f : scene.forces)
     if (f.kind == "bushing" && f.rotational_stiffness != 0)
-      return {{}, "bushing '" + f.name + "' has a rotational stiffness, which only space has"};
+      return {{}, with_ends("bushing", f) + " has a rotational stiffness, which only space has"};
   for (const JointSpec& joint : scene.joints)
     if (joint.bearing && joint.kind == JointKind::revolute && joint.bearing->length > 0)
       return {{}, "the bearing of joint '" + joint.name + "' carries moments out of the plane"};

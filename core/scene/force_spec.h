@@ -69,4 +69,8 @@ struct ForceSpec {
 /// Whether limits of the length have stops.
 bool has_stops(const ForceSpec& force);
 
+/// "spring 'pull' from 'a' to 'b'" for the word "spring", or "spring from 'a' to 'b'" of a force
+/// without a name.
+std::string with_ends(const std::string& word, const ForceSpec& force);
+
 }  // namespace momenta

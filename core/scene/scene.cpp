@@ -36,6 +36,11 @@ bool has_stops(const ForceSpec& force) {
   return force.limits && (force.stop_stiffness != 0 || force.stop_damping != 0);
 }
 
+std::string with_ends(const std::string& word, const ForceSpec& force) {
+  return word + (force.name.empty() ? "" : " " + reading::in_quotes(force.name)) + " from " +
+         reading::in_quotes(force.parent) + " to " + reading::in_quotes(force.child);
+}
+
 bool ties_bodies(const LoopSpec& loop) {
   return loop.kind != LoopKind::coupler && !has_equation(loop);
 }

@@ -103,9 +103,8 @@ void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium
     const double length =
         (place(f.child, f.origin_child) - place(f.parent, f.origin_parent)).norm();
     if (length <= 1e-9 * length_of(scene))
-      throw SceneError(scene.where(f.at) + "spring '" + f.name + "' from '" + f.parent + "' to '" +
-                       f.child +
-                       "' has no length at the equilibrium, so that its direction is not "
+      throw SceneError(scene.where(f.at) + with_ends("spring", f) +
+                       " has no length at the equilibrium, so that its direction is not "
                        "determined; expected ends that are apart there");
   }
 }

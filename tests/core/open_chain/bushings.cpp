@@ -323,6 +323,10 @@ damping = 0.3
     EXPECT_LE((pdot - other).norm(), 1e-12 * (1 + pdot.norm()));
     EXPECT_NEAR(energy(planar, s), energy(spatial, s), 1e-12 * (1 + energy(planar, s)));
   }
+  Scene stiff = scene;
+  stiff.forces[0].rotational_stiffness = 1;
+  EXPECT_EQ(OpenChain(stiff).plan().planar_reason,
+            "bushing from 'ground' to 'b' has a rotational stiffness, which only space has");
 }
 
 }  // namespace

@@ -509,7 +509,13 @@ kind = "spring-damper"
 child = "b"
 stiffness = 4
 )",
-          "spring 'pull'");
+          "spring 'pull' from 'ground' to 'b' has no length");
+  refused(body_on("planar") + R"([[force]]
+kind = "spring-damper"
+child = "b"
+stiffness = 4
+)",
+          ": spring from 'ground' to 'b' has no length");
 }
 
 // At and beyond a rigid stop motions, however small, have impacts.
