@@ -88,7 +88,9 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
       const std::string near = reading::did_you_mean(name, known);
       throw std::invalid_argument(
           reading::in_quotes(name) + " is no parameter of the scene and no start value" +
-          (near.empty() ? ", expected one of: " + reading::listed(known) : near));
+          (!near.empty()   ? near
+           : known.empty() ? ", expected a number by its place, as in body.crank.mass"
+                           : ", expected one of: " + reading::listed(known)));
     }
     chosen.push_back(*found);
   }

@@ -71,8 +71,10 @@ class Way {
     std::vector<std::string_view> names;
     for (const Entry& e : parameters.entries) names.push_back(e.key);
     const std::string near = did_you_mean(rest_, names);
-    fail("the scene has no parameter of that name" +
-         (near.empty() ? ", expected one of: " + listed(names) : near));
+    fail("the scene has no parameter of that name" + (!near.empty() ? near
+                                                      : names.empty()
+                                                          ? ", expected numbers in [parameters]"
+                                                          : ", expected one of: " + listed(names)));
   }
   static bool is_list_of_tables(const Value& v) {
     return !v.items.empty() && v.items.front().type == Value::Type::table;
@@ -112,8 +114,10 @@ class Way {
       std::vector<std::string_view> names;
       for (Value& table : list.items)
         if (!name_of(table).empty()) names.push_back(name_of(table));
-      fail("the scene has no " + std::string(taken()) + " of that name, expected one of: " +
-           listed(names) + did_you_mean(rest_.substr(0, rest_.find('.')), names));
+      const std::string kind(taken());
+      fail("the scene has no " + kind + " of that name, expected " +
+           (names.empty() ? "names in its [[" + kind + "]]" : "one of: " + listed(names)) +
+           did_you_mean(rest_.substr(0, rest_.find('.')), names));
     }
     rest_.remove_prefix(std::min(rest_.size(), length + 1));
     if (rest_.empty()) fail("is a name alone, expected a key after it");

@@ -22,8 +22,10 @@ std::pair<int, int> coordinate_named(const Mechanism& mechanism, const std::stri
     for (int i = 0; i < body.nq; ++i)
       if (is_it(body.q + i, body.nq == 1)) return {body.q + i, body.u + i};
   }
-  throw SceneError("coordinate '" + name + "' is not known; expected " +
-                   reading::all_in_quotes(known));
+  throw SceneError("coordinate '" + name + "' is not known" +
+                   (known.empty() ? ": all joints are welds, are driven or have quaternions; "
+                                    "expected another joint"
+                                  : "; expected " + reading::all_in_quotes(known)));
 }
 
 using Eigen::VectorXd;

@@ -30,8 +30,10 @@ void add(std::vector<GroupedColumn>& to, const std::vector<Column>& more, const 
 [[noreturn]] void refuse_unknown(const std::string& what, const std::string& name,
                                  const std::vector<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
-  throw SceneError(what + " " + reading::in_quotes(name) + " is not known; expected " +
-                   reading::all_in_quotes(known, 12) + reading::did_you_mean(name, views));
+  throw SceneError(
+      what + " " + reading::in_quotes(name) + " is not known; expected " +
+      (known.empty() ? "none, for the model has no " + what : reading::all_in_quotes(known, 12)) +
+      reading::did_you_mean(name, views));
 }
 
 }  // namespace

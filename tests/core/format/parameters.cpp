@@ -179,6 +179,11 @@ TEST(Parameters, MistakesAreNamed) {
             "scene.toml:11:12: requirement number 1: that, 'c <': ends where a number is expected");
   EXPECT_EQ(sentence(with_parameters, {{"aa", 1}}),
             "'aa': the scene has no parameter of that name; did you mean 'a'?");
+  EXPECT_EQ(sentence("[parameters]\n", {{"a", 1}}),
+            "'a': the scene has no parameter of that name, expected numbers in [parameters]");
+  EXPECT_EQ(sentence(with_parameters, {{"force.x.value", 1}}),
+            "'force.x.value': the scene has no force of that name, expected names in its "
+            "[[force]]");
 }
 
 }  // namespace

@@ -452,6 +452,17 @@ TEST(Kinematics, WhatIsLeftFreeIsHeldOrNamed) {
   EXPECT_THROW(moved(open, "X"), SceneError);
   held.hold = {"A", "C"};
   EXPECT_THROW(moved(open, "O", held), SceneError);
+  Scene driven = open;
+  driven.loops.clear();
+  for (const JointSpec& joint : driven.joints) {
+    driven.drives.emplace_back();
+    driven.drives.back().joint = joint.name;
+    driven.drives.back().kind = "polynomial";
+    driven.drives.back().coefficients = {1};
+  }
+  EXPECT_EQ(equations::thrown<SceneError>([&] { moved(driven, "O"); }),
+            "coordinate 'O' is not known: all joints are welds, are driven or have quaternions; "
+            "expected another joint");
 }
 
 // A four-bar with a driven crank carries a pendulum, which alone is free: the hinges of the loop

@@ -305,6 +305,18 @@ TEST(LinearModels, RefuseSingularPosesAndWhatIsNotThere) {
   refused(&LinearRequest::outputs, {"rates", "O.u"}, "is chosen twice");
   refused(&LinearRequest::independent, {"O", "A"}, "are 2, expected 1");
   refused(&LinearRequest::independent, {"X"}, "independent coordinate 'X' is not known");
+  Scene welded;
+  welded.bodies = {rod("b")};
+  welded.joints = {hinge("O", "ground", "b", {0, 0, 0}, 0)};
+  welded.joints[0].kind = JointKind::weld;
+  welded.joints[0].position.clear();
+  LinearRequest of_none;
+  of_none.inputs = {"O"};
+  EXPECT_EQ(sentence_of([&] {
+              const Mechanism fixed(welded);
+              linear_model(fixed, equations::start_of(fixed), of_none);
+            }),
+            "input 'O' is not known; expected none, for the model has no input");
   Start lost = at;
   lost.u[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(sentence_of([&] { model_of(four_bar, lost); }).find("the state is not finite"),

@@ -334,6 +334,12 @@ TEST(Gradient, RefusesInOneSentence) {
   const SceneText scene = of_text(four_bar);
   EXPECT_EQ(refusal(scene, asked("P.x", {"crnk"}, "momentum", "reset")),
             "'crnk' is no parameter of the scene and no start value; did you mean 'crank'?");
+  EXPECT_EQ(
+      refusal(of_text("[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\n"
+                      "[[joint]]\nname = \"O\"\nkind = \"weld\"\nchild = \"b\"\n"),
+              asked("1", {"w"}, "momentum", "reset")),
+      "'w' is no parameter of the scene and no start value, expected a number by its place, as in "
+      "body.crank.mass");
   EXPECT_EQ(refusal(scene, asked("P.x", {"crank", "crank"}, "momentum", "reset")),
             "'crank' is named twice; expected it once");
   EXPECT_EQ(refusal(scene, asked("P.x", {"crank", "parameters.crank"}, "momentum", "reset")),
