@@ -3,6 +3,7 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/quoting.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace momenta {
@@ -67,6 +68,14 @@ std::string law_fault(const DriveSpec& spec) {
 
 std::string law_corner(const DriveSpec& spec) {
   return spec.kind == "formula" ? std::string(law_of(spec).corner()) : std::string();
+}
+
+bool has_running_drive(const Scene& scene) {
+  return std::any_of(scene.drives.begin(), scene.drives.end(), [](const DriveSpec& drive) {
+    return drive.kind != "polynomial" ||
+           std::any_of(drive.coefficients.begin() + !drive.coefficients.empty(),
+                       drive.coefficients.end(), [](double c) { return c != 0; });
+  });
 }
 
 MotionLaw::MotionLaw(const DriveSpec& spec)

@@ -39,6 +39,9 @@ std::string law_fault(const DriveSpec& spec);
 /// @pre no fault
 std::string law_corner(const DriveSpec& spec);
 
+/// Whether the scene has a drive whose law is more than a polynomial's constant.
+bool has_running_drive(const Scene& scene);
+
 /// The motion law of a DriveSpec: f(t) and its first two derivatives. Immutable.
 class MotionLaw {
  public:

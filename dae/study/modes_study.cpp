@@ -1,4 +1,5 @@
 #include <momenta/core/scene/bearings_refused.h>
+#include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/lagrangian/lagrangian_model.h>
 #include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/analysis/linear/operating_point.h>
@@ -121,8 +122,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
   if (start.q.size() > 0) at.moved = (at.q - start.q).cwiseAbs().maxCoeff();
   // Rates of drives show in what prescribed motion alone moves.
   if (mechanism.plan().drives && mechanism.nv() > 0) {
-    for (const DriveSpec& drive : mechanism.scene().drives)
-      result.drives_run |= drive.kind != "polynomial" || drive.coefficients.size() > 1;
+    result.drives_run = has_running_drive(mechanism.scene());
     if (mechanism.scene().lagrangian) result.drives_run = mechanism.lagrangian().in_time;
     if (result.drives_run) expect_constant(mechanism, at);
   }

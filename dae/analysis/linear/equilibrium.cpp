@@ -1,3 +1,4 @@
+#include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/lagrangian/lagrangian_model.h>
 #include <momenta/core/text/number_text.h>
@@ -52,6 +53,40 @@ VectorXd formula_scales(const Mechanism& mechanism, Evaluation<double>& e) {
   e.mass_diagonal(scale.data());
   e.momentum_rates(nullptr, nullptr, nullptr, 0, force.data());
   return (scale + force.cwiseAbs()).cwiseMax(1e-30);
+}
+
+/// Whether the formula of a loop of positions has t in it.
+bool has_time(const Scene& scene, const LoopSpec& loop) {
+  if (loop.kind != LoopKind::equation) return false;
+  const std::vector<Signal> signals = FormulaReader(scene).read(loop.equation).signals;
+  return std::any_of(signals.begin(), signals.end(),
+                     [](const Signal& s) { return s.kind == Signal::Kind::time; });
+}
+
+/// Refuses a loop or constraint with Φ_t ≠ 0, which a formula with t, a formula of velocities or
+/// drives move.
+[[noreturn]] void refuse_moving(const Scene& scene, const std::string& name) {
+  const auto is_it = [&](const auto& named) { return named.name == name; };
+  const auto moves = [&](Location at, const std::string& what, const char* expected) {
+    throw SceneError(scene.where(at) + what + ": no pose is at rest; expected " + expected);
+  };
+  if (scene.lagrangian) {
+    const auto& all = scene.lagrangian->constraints;
+    const auto found = std::find_if(all.begin(), all.end(), is_it);
+    moves(found == all.end() ? Location{} : found->at, "constraint '" + name + "' moves with t",
+          "constraints without t");
+  }
+  const auto loop = std::find_if(scene.loops.begin(), scene.loops.end(), is_it);
+  const bool by_formula = loop != scene.loops.end() && has_equation(*loop) &&
+                          (has_time(scene, *loop) || !has_running_drive(scene));
+  if (by_formula && loop->kind == LoopKind::equation)
+    moves(loop->at, "equation '" + name + "' moves with t", "an equation without t");
+  if (by_formula)
+    moves(loop->at, "velocity equation '" + name + "' is not zero at rest",
+          "terms that have rates in them");
+  throw SceneError(scene.where({}) + "the drives move loop '" + name +
+                   "': no pose is at rest while they run; expected drives that turn the mechanism "
+                   "as a whole, or to be held");
 }
 
 class Searcher {
@@ -155,10 +190,7 @@ class Searcher {
     e_.velocities(rate.data());
     Eigen::Index worst;
     if (rate.cwiseAbs().maxCoeff(&worst) <= 1e-9 * length_) return;
-    throw SceneError(mechanism_.scene().where({}) + "the drives move loop '" +
-                     mechanism_.rows()[static_cast<std::size_t>(worst)].loop +
-                     "': no pose is at rest while they run; expected drives that turn the "
-                     "mechanism as a whole, or to be held");
+    refuse_moving(mechanism_.scene(), mechanism_.rows()[static_cast<std::size_t>(worst)].loop);
   }
 
   /// Softens loops by 1e-8 of their stiffness: redundant ones then do no harm.

@@ -518,6 +518,61 @@ stiffness = 4
           ": spring from 'ground' to 'b' has no length");
 }
 
+// Where no drive runs, the sentence names the formula that moves.
+TEST(Modes, AboutFormulasThatMoveAreRefusedInASentence) {
+  const std::string two = R"(
+gravity = [0, -9.81, 0]
+[[body]]
+name = "a"
+mass = 1
+shape = { kind = "rod", length = 1 }
+[[body]]
+name = "b"
+mass = 1
+shape = { kind = "rod", length = 1 }
+[[joint]]
+name = "A"
+kind = "revolute"
+child = "a"
+position = -1.5707963267948966
+[[joint]]
+name = "B"
+kind = "revolute"
+child = "b"
+position = -1.5707963267948966
+[[drive]]
+joint = "B"
+kind = "polynomial"
+coefficients = [-1.5707963267948966]
+)";
+  const std::string free = two.substr(0, two.find("[[drive]]"));
+  const auto refused = [](const std::string& text, const std::string& with, bool running = false) {
+    const std::string said = equations::thrown<SceneError>([&] { modes_of(text, {}, running); });
+    EXPECT_TRUE(equations::says(said, with)) << said;
+  };
+  const std::string loop = "[[loop]]\nname = \"L\"\nkind = \"equation\"\nequation = ";
+  for (const std::string& scene : {free, two})
+    refused(scene + loop + "\"A.q - B.q + 0.1*t\"\n",
+            "equation 'L' moves with t: no pose is at rest; expected an equation without t");
+  refused(free +
+              "[[loop]]\nname = \"L\"\nkind = \"velocity-equation\"\n"
+              "equation = \"A.u - B.u + 0.1\"\n",
+          "velocity equation 'L' is not zero at rest: no pose is at rest; expected terms that have "
+          "rates in them");
+  std::string turning = two;
+  turning.replace(turning.rfind("966]"), 4, "966, 1]");
+  refused(turning + loop + "\"A.q - B.q\"\n", "the drives move loop 'L'", true);
+  refused(R"toml(
+[lagrangian]
+coordinates = ["x", "y"]
+position = [0.0, 1.0]
+kinetic = "(x.dot^2 + y.dot^2)/2"
+potential = "x^2"
+constraints = [{ name = "wheel", equation = "y - 1 - 0.1*sin(t)" }]
+)toml",
+          "constraint 'wheel' moves with t: no pose is at rest; expected constraints without t");
+}
+
 // At and beyond a rigid stop motions, however small, have impacts.
 TEST(Modes, AtRigidStopsAreRefused) {
   const auto pendulum = [](const std::string& limits, double velocity) {
