@@ -1,6 +1,7 @@
 #include <momenta/core/text/quoting.h>
 #include <momenta/dae/algebra/dense/decompositions.h>
 #include <momenta/dae/analysis/effort/closed_motion.h>
+#include <momenta/dae/analysis/kinematics/held_coordinate.h>
 #include <momenta/dae/mechanism/mechanism.h>
 
 #include <algorithm>
@@ -116,17 +117,24 @@ void ClosedMotion::refuse_open(double t, const LoopIsland& island) {
   }
   // Largest rates in the open motions, one for each freedom.
   Eigen::ColPivHouseholderQR<MatrixXd> moves((island.N * open).transpose());
-  std::vector<std::string> names;
-  for (int i = 0; i < count; ++i)
-    names.push_back(
-        rates_[static_cast<std::size_t>(
-                   island.rates[static_cast<std::size_t>(moves.colsPermutation().indices()[i])])]
-            .name);
-  throw SceneError(at(t) + "the motion leaves " + std::to_string(count) +
-                   (count == 1 ? " degree" : " degrees") +
-                   " of freedom open; expected as many more coordinates with a motion, or held, "
-                   "such as those of " +
-                   reading::all_in_quotes(names));
+  std::vector<std::string> names, joints;
+  for (int i = 0; i < count; ++i) {
+    const int rate = island.rates[static_cast<std::size_t>(moves.colsPermutation().indices()[i])];
+    if (std::string name = coordinate_of_rate(mechanism_, rate); !name.empty()) {
+      names.push_back(std::move(name));
+      continue;
+    }
+    for (const auto& body : mechanism_.tree().bodies)
+      if (rate >= body.u && rate < body.u + body.nv &&
+          std::find(joints.begin(), joints.end(), body.joint) == joints.end())
+        joints.push_back(body.joint);
+  }
+  throw SceneError(
+      at(t) + "the motion leaves " + std::to_string(count) + (count == 1 ? " degree" : " degrees") +
+      " of freedom open; expected as many more coordinates with a motion, or held" +
+      (names.empty() ? "" : ", such as " + reading::all_in_quotes(names)) +
+      (joints.empty() ? ""
+                      : "; those of " + reading::all_in_quotes(joints) + " take a motion alone"));
 }
 
 double ClosedMotion::missed(const VectorXd& wanted, const VectorXd& got, int* worst) const {

@@ -145,27 +145,40 @@ class Search {
       const SingularValues svd(j);
       null = svd.v.rightCols(j.cols() - svd.rank(free_value));
     }
-    if (null.cols() <= spins_) return;
-    // Rates that span the freedoms: pivots of the null space.
-    const Eigen::ColPivHouseholderQR<MatrixXd> pivots(null.transpose());
-    std::vector<std::string> names;
-    for (Eigen::Index k = 0; k < null.cols(); ++k)
-      names.push_back(
-          coordinate_of(rates[static_cast<std::size_t>(pivots.colsPermutation().indices()[k])]));
+    const Eigen::Index freedoms = null.cols() - spins_;
+    if (freedoms <= 0) return;
+    const std::vector<std::string> names = coordinates_of(null, rates, freedoms);
+    const auto left = freedoms - static_cast<Eigen::Index>(names.size());
     throw SceneError(
-        "what is held leaves " + std::to_string(null.cols()) +
-        (null.cols() == 1 ? " degree" : " degrees") +
-        " of freedom, and assemblies that are no isolated poses; expected as many coordinates "
-        "held, such as " +
-        reading::all_in_quotes(names));
+        "what is held leaves " + std::to_string(freedoms) +
+        (freedoms == 1 ? " degree" : " degrees") +
+        " of freedom, and assemblies that are no isolated poses; expected " +
+        (left == 0       ? "as many coordinates held, such as " + reading::all_in_quotes(names)
+         : names.empty() ? "other joints: coordinates of spherical and free joints cannot be held"
+                         : "other joints: coordinates of spherical and free joints cannot be held, "
+                           "and with " +
+                               reading::all_in_quotes(names) + " held " + std::to_string(left) +
+                               (left == 1 ? " is left" : " are left")));
   }
 
-  /// Name of the coordinate with this rate.
-  std::string coordinate_of(int u) const {
-    for (const auto& body : mechanism_.tree().bodies)
-      if (u >= body.u && u < body.u + body.nv)
-        return mechanism_.coordinate_columns()[static_cast<std::size_t>(body.q + u - body.u)].name;
-    return mechanism_.rate_columns()[static_cast<std::size_t>(u)].name;
+  /// Coordinates that can be held and have rates that span the freedoms, or as many of them as can
+  /// be: pivots of the null space `null` of columns with these rates.
+  std::vector<std::string> coordinates_of(const MatrixXd& null, const std::vector<int>& rates,
+                                          Eigen::Index freedoms) const {
+    std::vector<std::string> all, chosen;
+    std::vector<int> rows;
+    for (std::size_t k = 0; k < rates.size(); ++k)
+      if (std::string name = coordinate_of_rate(mechanism_, rates[k]); !name.empty()) {
+        all.push_back(std::move(name));
+        rows.push_back(static_cast<int>(k));
+      }
+    if (rows.empty()) return {};
+    Eigen::ColPivHouseholderQR<MatrixXd> pivots;
+    pivots.setThreshold(free_value);
+    pivots.compute(MatrixXd(null(rows, Eigen::all)).transpose());
+    for (Eigen::Index k = 0; k < std::min(pivots.rank(), freedoms); ++k)
+      chosen.push_back(all[static_cast<std::size_t>(pivots.colsPermutation().indices()[k])]);
+    return chosen;
   }
 
   void add(Assemblies& found, const VectorXd& q, int met) {

@@ -28,6 +28,15 @@ std::pair<int, int> coordinate_named(const Mechanism& mechanism, const std::stri
                                   : "; expected " + reading::all_in_quotes(known)));
 }
 
+std::string coordinate_of_rate(const Mechanism& mechanism, int rate) {
+  const std::vector<Column> columns = mechanism.coordinate_columns();
+  if (mechanism.scene().lagrangian) return columns[static_cast<std::size_t>(rate)].name;
+  for (const auto& body : mechanism.tree().bodies)
+    if (body.nq == body.nv && rate >= body.u && rate < body.u + body.nv)
+      return columns[static_cast<std::size_t>(body.q + rate - body.u)].name;
+  return "";
+}
+
 using Eigen::VectorXd;
 
 double HeldCoordinate::value(const VectorXd& q) const {

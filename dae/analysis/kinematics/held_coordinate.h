@@ -14,6 +14,10 @@ namespace momenta {
 /// quaternion. O(bodies)
 std::pair<int, int> coordinate_named(const Mechanism& mechanism, const std::string& name);
 
+/// The name of the coordinate with this rate, as coordinate_named() takes it; empty where the joint
+/// has a quaternion. O(coordinates)
+std::string coordinate_of_rate(const Mechanism& mechanism, int rate);
+
 // A function Σ c_i q_i of the pose that is held while other coordinates move:
 //
 //   "O", "J.q2", "S.qx"   a coordinate, one of a free body or of a quaternion among them

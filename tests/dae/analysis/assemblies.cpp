@@ -8,6 +8,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/format/toml/parse_scene.h>
 
 #include <cmath>
 #include <complex>
@@ -87,6 +88,48 @@ TEST(Assemblies, AreRefusedWhereAFreedomIsLeft) {
   AssembliesRequest wrong;
   wrong.hold = {"X"};
   EXPECT_NE(says(wrong).find("'X' is not known"), std::string::npos) << says(wrong);
+}
+
+/// The names in quotes behind a word of a sentence.
+std::vector<std::string> quoted_behind(const std::string& sentence, const std::string& word) {
+  std::vector<std::string> names;
+  std::size_t from = sentence.find(word);
+  EXPECT_NE(from, std::string::npos) << sentence;
+  while ((from = sentence.find('\'', from)) < sentence.size()) {
+    const std::size_t to = sentence.find('\'', from + 1);
+    names.push_back(sentence.substr(from + 1, to - from - 1));
+    from = to + 1;
+  }
+  return names;
+}
+
+/// Coordinates that a refusal names can be held, and leave no freedom.
+TEST(Assemblies, TakeTheCoordinatesTheyAskFor) {
+  const Scene typed = parse_scene(
+      "[lagrangian]\ncoordinates = [\"a\", \"b\"]\nkinetic = \"a.dot^2 + b.dot^2\"\n", "typed");
+  Scene swinging = closed_four_bar(1);
+  swinging.loops.clear();
+  for (const Scene& scene : {closed_four_bar(1), swinging, typed}) {
+    AssembliesRequest request;
+    request.starts = 5;
+    request.hold =
+        quoted_behind(equations::thrown<SceneError>([&] { found_in(scene, request); }), "such as ");
+    EXPECT_GE(found_in(scene, request).all.size(), 1u);
+  }
+  // A ball's coordinates are none of these, and those left are told.
+  Scene ball = swinging;
+  ball.joints[1].kind = JointKind::spherical;
+  ball.joints[1].position.clear();
+  AssembliesRequest request;
+  const std::string said = equations::thrown<SceneError>([&] { found_in(ball, request); });
+  EXPECT_TRUE(equations::says(said, "leaves 5 degrees of freedom")) << said;
+  EXPECT_TRUE(equations::says(said, "held 3 are left")) << said;
+  request.hold = quoted_behind(said, "expected ");
+  EXPECT_EQ(request.hold.size(), 2u);
+  EXPECT_TRUE(equations::says(
+      equations::thrown<SceneError>([&] { found_in(ball, request); }),
+      "leaves 3 degrees of freedom, and assemblies that are no isolated poses; expected other "
+      "joints: coordinates of spherical and free joints cannot be held"));
 }
 
 /// Where all is held or welded, by either way one pose is left, the mechanism's own.

@@ -474,7 +474,19 @@ TEST(Effort, SaysWhatIsAmiss) {
   const Scene shaken = example("driven");
   has(equations::thrown<SceneError>([&] { along_drives(shaken, 1); }),
       "leaves 1 degree of freedom open; expected as many more coordinates with a motion, or held, "
-      "such as those of 'M.u'");
+      "such as 'M.q'");
+  EffortRequest half;
+  half.motion.hold = {"O.q"};
+  half.motion.poses_alone = true;
+  half.motion.times = {0};
+  Scene ball = bars;
+  ball.loops.clear();
+  ball.drives.clear();
+  ball.joints[1].kind = JointKind::spherical;
+  ball.joints[1].position.clear();
+  has(equations::thrown<SceneError>([&] { effort(Mechanism(ball), half); }),
+      "leaves 1 degree of freedom open; expected as many more coordinates with a motion, or held; "
+      "those of 'A' take a motion alone");
   EffortRequest held;
   held.motion.hold = {"M"};
   has(equations::thrown<SceneError>([&] { along_drives(shaken, 1, held); }),
