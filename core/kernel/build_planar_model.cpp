@@ -3,6 +3,7 @@
 
 #include <momenta/core/kernel/take_tree.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta {
@@ -39,6 +40,32 @@ Vec2<double> vec2(const Eigen::Vector3d& v) {
   return {{v.x(), v.y()}};
 }
 
+/// Whether gravity or a force may act along the normal, at zero positions and so at all.
+bool loads_across(const Tree& tree, const Scene& scene, const Eigen::Vector3d& normal) {
+  const auto poses = tree.zero_poses();
+  const auto pose = [&](const std::string& name) {
+    const int body = tree.body(name);
+    return body < 0 ? Eigen::Isometry3d::Identity() : poses[static_cast<std::size_t>(body)];
+  };
+  const auto place = [&](const std::string& name, const Eigen::Vector3d& point) {
+    return Eigen::Vector3d(pose(name) * tree.point(tree.body(name), point));
+  };
+  const auto across = [&](const Eigen::Vector3d& v) {
+    return std::abs(v.dot(normal)) > angle_tolerance * v.norm();
+  };
+  return across(scene.gravity) ||
+         std::any_of(scene.forces.begin(), scene.forces.end(), [&](const ForceSpec& f) {
+           if (f.kind == "potential") return true;
+           if (f.kind == "wrench")
+             return std::any_of(f.force_law.begin(), f.force_law.end(),
+                                [](const std::string& law) { return !law.empty(); }) ||
+                    across(f.in_body_axes ? Eigen::Vector3d(pose(f.body).linear() * f.force)
+                                          : f.force);
+           return !f.child.empty() &&
+                  across(place(f.child, f.origin_child) - place(f.parent, f.origin_parent));
+         });
+}
+
 }  // namespace
 
 PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
@@ -72,8 +99,11 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
     if (f.kind == "bushing" && f.rotational_stiffness != 0)
       return {{}, with_ends("bushing", f) + " has a rotational stiffness, which only space has"};
   for (const JointSpec& joint : scene.joints)
-    if (joint.bearing && joint.kind == JointKind::revolute && joint.bearing->length > 0)
+    if (joint.bearing && joint.bearing->length > 0)
       return {{}, "the bearing of joint '" + joint.name + "' carries moments out of the plane"};
+  for (const JointSpec& joint : scene.joints)
+    if (joint.bearing && joint.kind == JointKind::prismatic && loads_across(tree, scene, *normal))
+      return {{}, "the bearing of joint '" + joint.name + "' carries loads out of the plane"};
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const Eigen::Vector3d z = poses[k].linear().col(2);

@@ -40,8 +40,8 @@ Eigen::VectorXd reaches(const Mechanism& mechanism) {
   return way;
 }
 
-/// The larger of √a and rates, in reaches(); a: the accelerations that loops cause, without loops
-/// all. Where nothing moves: ten per run of the scene.
+}  // namespace
+
 double own_rate(const Mechanism& mechanism, const Start& start) {
   Eigen::VectorXd acceleration = start.udot;
   if (mechanism.m() > 0) {
@@ -62,6 +62,8 @@ double own_rate(const Mechanism& mechanism, const Start& start) {
   const double end = mechanism.scene().run.end_time;
   return end > 0 ? 10 / end : 1;
 }
+
+namespace {
 
 /// ρ: √(g/ℓ) under weight, whatever the start; else the mechanism's own rate, as far as a run
 /// notices it.

@@ -14,6 +14,10 @@ namespace momenta {
 /// 10^k with least ≤ x / 10^k < 10 least.
 double power_of_ten(double x, double least);
 
+/// The larger of √a and rates, in lengths of what moves [1/s]; a: the accelerations that loops
+/// cause, without loops all. Where nothing moves: ten per run of the scene.
+double own_rate(const Mechanism& mechanism, const Start& start);
+
 struct NaturalSizes {
   NaturalSizes(const Mechanism& mechanism, const Start& start);
 

@@ -113,6 +113,8 @@ std::vector<std::string> corners(const Scene& scene, const std::string& of_funct
 
 std::string no_adjoint(const Mechanism& mechanism, bool along) {
   const std::string instead = "; expected the mode 'forward'";
+  if (mechanism.nv() == 0)
+    return "a mechanism of which nothing moves freely has no adjoint" + instead;
   if (mechanism.plan().quasi_velocities)
     return "spherical and free joints, whose rates are no derivatives of coordinates, have no "
            "adjoint" +

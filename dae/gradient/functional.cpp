@@ -120,8 +120,9 @@ void Functional::take_energy(double t, const VectorXd& q, const VectorXd& u, con
   energy_ = energy(*e_, t, q, u);
   energy_tangents_.setZero(dq.cols());
   for (Index j = 0; j < dq.cols(); ++j) {
-    const double along = std::max(dq.col(j).cwiseAbs().maxCoeff() / (1 + q.cwiseAbs().maxCoeff()),
-                                  du.col(j).cwiseAbs().maxCoeff() / (1 + u.cwiseAbs().maxCoeff()));
+    const double along =
+        std::max(dq.col(j).lpNorm<Eigen::Infinity>() / (1 + q.lpNorm<Eigen::Infinity>()),
+                 du.col(j).lpNorm<Eigen::Infinity>() / (1 + u.lpNorm<Eigen::Infinity>()));
     if (along > 0)
       energy_tangents_[j] +=
           sixth_order::slope_of(sixth_order::part / along, sixth_order::exact,

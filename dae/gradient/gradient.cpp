@@ -355,18 +355,18 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
         near.push_back(scene.scene({{v.name, v.value + 1e-9 * v.size}}));
       } catch (const SceneError&) {  // no neighbour: no formula differs
       }
-  LawJumps jumps(mechanism, near, !form.momentum_like());
-  GradientTask task{
-      request,
-      mechanism,
-      start,
-      form,
-      others,
-      options,
-      start_adjoint ? &*start_adjoint : nullptr,
-      jumps,
-      s.step == 0 ? input_times(mechanism.scene(), start.t, s.end_time) : std::vector<double>{},
-      result};
+  const std::vector<double> inputs = input_times(mechanism.scene(), start.t, s.end_time);
+  LawJumps jumps(mechanism, near, !form.momentum_like(), inputs);
+  GradientTask task{request,
+                    mechanism,
+                    start,
+                    form,
+                    others,
+                    options,
+                    start_adjoint ? &*start_adjoint : nullptr,
+                    jumps,
+                    s.step == 0 ? inputs : std::vector<double>{},
+                    result};
   if (result.adjoint)
     task.adjoint();
   else

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace momenta {
 namespace {
@@ -16,6 +18,13 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int pieces = 8, halvings = 24;
+
+/// Whether the derivative of an operation may jump.
+bool may_turn(formula::Operation o) {
+  using O = formula::Operation;
+  return formula::has_corner(o) || o == O::spline || o == O::sqrt || o == O::hypot ||
+         o == O::power || o == O::asin || o == O::acos;
+}
 
 /// Whether a formula may jump at a moment that depends on the motion (variables of_motion) or on a
 /// number that differs in one of the others; with `rates`, its derivatives too; with `points_move`,
@@ -50,9 +59,8 @@ bool may_jump(const Expression& formula, Moves&& of_motion, const std::vector<Ex
       const formula::Instruction& exponent = tape[static_cast<std::size_t>(in.b)];
       if (exponent.operation != O::number || !(exponent.number > 0)) jumps |= moves[i] != 0;
     }
-    if (in.operation == O::atan2) jumps |= moves[i] != 0;
-    if (rates && (formula::has_corner(in.operation) || in.operation == O::spline))
-      jumps |= moves[i] != 0;
+    if (in.operation == O::atan2 || in.operation == O::tan) jumps |= moves[i] != 0;
+    if (rates && may_turn(in.operation)) jumps |= moves[i] != 0;
   }
   return jumps;
 }
@@ -64,8 +72,10 @@ bool may_jump(const Formula& formula, const std::vector<Expression>& others, boo
   return may_jump(formula.expression, of_motion, others, rates, points_move);
 }
 
-/// The same for a force in a Lagrangian, whose parameters are variables.
-bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scene>& others) {
+/// The same for a force or, with `rates`, an energy in a Lagrangian, whose parameters are
+/// variables.
+bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scene>& others,
+              bool rates = false) {
   AnyNames names;
   const auto of_motion = [&](int i) {
     const std::string& name = names.names[static_cast<std::size_t>(i)];
@@ -77,9 +87,9 @@ bool may_jump(const std::string& law, const Scene& scene, const std::vector<Scen
     return name != "t";
   };
   try {
-    return may_jump(Expression(law, names), of_motion, {});
+    return may_jump(Expression(law, names), of_motion, {}, rates);
   } catch (const std::logic_error&) {  // the formula calls functions by points
-    return false;
+    return rates;
   }
 }
 
@@ -94,8 +104,8 @@ bool calls_points(const Formula& formula) {
 }  // namespace
 
 LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
-                   bool of_accelerations)
-    : of_accelerations_(of_accelerations) {
+                   bool of_accelerations, std::vector<double> inputs)
+    : of_accelerations_(of_accelerations), inputs_(std::move(inputs)) {
   const Scene& scene = mechanism.scene();
   const FormulaReader reader(scene);
   std::vector<FormulaReader> readers;
@@ -105,12 +115,20 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
     events.emplace_back().when.text = std::move(text);
     laws_.push_back("the force by " + reading::in_quotes(law));
   };
-  if (scene.lagrangian)
-    for (const LagrangianSpec::Force& force : scene.lagrangian->forces)
+  bool whole = false;
+  if (scene.lagrangian) {
+    const LagrangianSpec& l = *scene.lagrangian;
+    for (const LagrangianSpec::Force& force : l.forces)
       if (may_jump(force.value.text, scene, others)) watch(force.value.text, force.value.text);
+    for (const std::string& energy : {l.lagrangian.text, l.kinetic.text, l.potential.text})
+      whole |= !energy.empty() && may_jump(energy, scene, others, true);
+  }
   for (std::size_t i = 0; i < scene.forces.size(); ++i) {
     const ForceSpec& force = scene.forces[i];
-    if (force.kind == "potential") continue;
+    // θ of a bushing turns over at half a turn, the direction of a spring at length zero.
+    whole |= force.rotational_stiffness != 0 ||
+             (force.kind == "spring-damper" && (force.rest != 0 || !force.law.empty()));
+    const bool potential = force.kind == "potential";
     const std::vector<OwnName> own = reader.own_names(force);
     each_formula(force, [&](const std::string& key, const std::string& law) {
       const Formula formula = reader.read(law, own);
@@ -122,6 +140,10 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
             near.push_back(readers[k].read(its_law, readers[k].own_names(its)).expression);
         });
       }
+      if (potential) {
+        whole |= may_jump(formula, near, true);
+        return;
+      }
       if (calls_points(formula) || !may_jump(formula, near)) return;
       std::vector<std::string> names;
       for (const Signal& signal : formula.signals) names.push_back(in_words(scene, signal));
@@ -130,6 +152,10 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
     });
   }
   if (!events.empty()) values_ = std::make_unique<EventValues>(mechanism, events);
+  if (whole && mechanism.nv() > 0) {
+    evaluation_ = mechanism.evaluation<double>();
+    for (const Column& rate : mechanism.rate_columns()) rates_.push_back(rate.name);
+  }
   const bool points_move = std::any_of(others.begin(), others.end(), [&](const Scene& other) {
     return !std::equal(scene.functions.begin(), scene.functions.end(), other.functions.begin(),
                        [](const FunctionSpec& a, const FunctionSpec& b) { return a.x == b.x; });
@@ -149,7 +175,77 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
   }
 }
 
+namespace {
+
+struct Jump {
+  double t, from, to;
+};
+
+/// A jump of number k of at(t, numbers) in a part of a step. Numbers that are continuous keep 2⁻²⁴
+/// of their first change, or that of their steepest place.
+template <class At>
+std::optional<Jump> jump_in(double from, double to, VectorXd low, VectorXd high, Eigen::Index k,
+                            const At& at) {
+  const double first = std::abs(high[k] - low[k]);
+  VectorXd middle;
+  for (int i = 0; i < halvings; ++i) {
+    const double half = 0.5 * (from + to);
+    if (!(from < half && half < to) || !at(half, middle)) break;
+    if (std::abs(middle[k] - low[k]) > std::abs(high[k] - middle[k])) {
+      high = middle;
+      to = half;
+    } else {
+      low = middle;
+      from = half;
+    }
+  }
+  if (!(std::abs(high[k] - low[k]) > 0.01 * first)) return std::nullopt;
+  return Jump{to, low[k], high[k]};
+}
+
+std::string in_words(const std::string& law, const Jump& jump) {
+  return "at t = " + compact(jump.t, 6) + " s " + law + " jumps from " + compact(jump.from, 3) +
+         " to " + compact(jump.to, 3) +
+         ", at a moment that depends on the motion or on what the derivative is by; expected one "
+         "that is continuous, as with tanh in the place of sign";
+}
+
+}  // namespace
+
 std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
+  std::string found = of_laws(t0, t1, motion);
+  return found.empty() && evaluation_ ? of_forces(t0, t1, motion) : found;
+}
+
+std::string LawJumps::of_forces(double t0, double t1, const Motion& motion) {
+  VectorXd q, u;
+  const auto at = [&](double t, VectorXd& f) {
+    f.resize(static_cast<Eigen::Index>(rates_.size()));
+    if (!motion(t, q, u)) return false;
+    evaluation_->place(t, q.data());
+    evaluation_->move(u.data());
+    evaluation_->joint_forces(q.data(), u.data(), nullptr, nullptr, f.data());
+    return f.allFinite();
+  };
+  VectorXd before, after;
+  if (!at(t0, before) || !at(t1, after)) return "";
+  const VectorXd change = (after - before).cwiseAbs();
+  VectorXd slope = slopes_;
+  if (slope.size() == 0) slope = VectorXd::Zero(change.size());
+  slopes_ = change / (t1 - t0);
+  const double least = 1e-9 * std::max(before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff());
+  for (Eigen::Index k = 0; k < change.size(); ++k) {
+    if (!(change[k] > least) || change[k] < 2 * slope[k] * (t1 - t0)) continue;
+    const auto jump = jump_in(t0, t1, before, after, k, at);
+    const auto at_input = [&](double t) { return std::abs(t - jump->t) <= 1e-6 * (t1 - t0); };
+    if (jump && std::none_of(inputs_.begin(), inputs_.end(), at_input))
+      return in_words("the force along " + rates_[static_cast<std::size_t>(k)], *jump);
+  }
+  return "";
+}
+
+std::string LawJumps::of_laws(double t0, double t1, const Motion& motion) {
+  if (laws_.empty()) return "";
   const auto count = static_cast<Eigen::Index>(laws_.size());
   const Eigen::Index of_drive = of_accelerations_ ? 3 : 2;
   VectorXd q, u;
@@ -181,25 +277,9 @@ std::string LawJumps::in_step(double t0, double t1, const Motion& motion) {
       if (change(i) > change(most)) most = i;
     const double first = change(most);
     if (!(first > 1e-9 * largest)) continue;
-    double from = time(static_cast<int>(most)), to = time(static_cast<int>(most) + 1);
-    VectorXd low = f[most], high = f[most + 1], middle;
-    for (int i = 0; i < halvings; ++i) {
-      const double half = 0.5 * (from + to);
-      if (!(from < half && half < to) || !at(half, middle)) break;
-      if (std::abs(middle[k] - low[k]) > std::abs(high[k] - middle[k])) {
-        high = middle;
-        to = half;
-      } else {
-        low = middle;
-        from = half;
-      }
-    }
-    // A continuous force keeps 2⁻²⁴ of the first change, or that of its steepest place.
-    if (std::abs(high[k] - low[k]) > 0.01 * first)
-      return "at t = " + compact(to, 6) + " s " + laws_[static_cast<std::size_t>(k)] +
-             " jumps from " + compact(low[k], 3) + " to " + compact(high[k], 3) +
-             ", at a moment that depends on the motion or on what the derivative is by; expected "
-             "one that is continuous, as with tanh in the place of sign";
+    if (const auto jump = jump_in(time(static_cast<int>(most)), time(static_cast<int>(most) + 1),
+                                  f[most], f[most + 1], k, at))
+      return in_words(laws_[static_cast<std::size_t>(k)], *jump);
   }
   return "";
 }

@@ -47,6 +47,7 @@ void StageMatrix::fill_dense() {
 }
 
 void StageMatrix::factor(Evaluation<double>& e) {
+  if (nv_ + m_ == 0) return;
   const std::size_t masses = mechanism_.kkt_pattern().mass.size();
   e.mass_entries(values_.data());
   if (m_ > 0) e.constraint_entries(loops_.data());
@@ -91,6 +92,7 @@ void StageMatrix::factor(Evaluation<double>& e) {
 }
 
 Eigen::MatrixXd StageMatrix::solve(const Eigen::MatrixXd& right) {
+  if (nv_ + m_ == 0) return right;
   Eigen::MatrixXd x = scale_.asDiagonal() * right;
   if (!dense_) {
     for (Index j = 0; j < x.cols() && !dense_; ++j)

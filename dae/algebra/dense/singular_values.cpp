@@ -1,9 +1,37 @@
 #include <momenta/dae/algebra/dense/singular_values.h>
 
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
 template class Eigen::BDCSVD<Eigen::MatrixXd>;
 template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 
 namespace momenta {
+namespace {
+
+#ifdef __SSE2__
+constexpr bool can_flush = true;
+/// While it lives, numbers below the least normal one are zero.
+class Flushed {
+ public:
+  Flushed() : before_(_mm_getcsr()) {
+    constexpr unsigned results = 0x8000, operands = 0x0040;
+    _mm_setcsr(before_ | results | operands);
+  }
+  ~Flushed() { _mm_setcsr(before_); }
+  Flushed(const Flushed&) = delete;
+  Flushed& operator=(const Flushed&) = delete;
+
+ private:
+  unsigned before_;
+};
+#else
+constexpr bool can_flush = false;
+struct Flushed {};
+#endif
+
+}  // namespace
 
 SingularValues::SingularValues(const Eigen::MatrixXd& a, unsigned options) {
   const auto take = [&](const auto& svd) {
@@ -16,8 +44,11 @@ SingularValues::SingularValues(const Eigen::MatrixXd& a, unsigned options) {
     return (product - a).norm() <= rounding * a.norm() && u.isUnitary(rounding) &&
            v.isUnitary(rounding);
   };
-  if (!take(Eigen::BDCSVD<Eigen::MatrixXd>(a, options)))
-    take(Eigen::JacobiSVD<Eigen::MatrixXd>(a, options));
+  if constexpr (can_flush) {
+    [[maybe_unused]] const Flushed flushed{};
+    if (take(Eigen::BDCSVD<Eigen::MatrixXd>(a, options))) return;
+  }
+  take(Eigen::JacobiSVD<Eigen::MatrixXd>(a, options));
 }
 
 Eigen::Index SingularValues::rank(double part) const {

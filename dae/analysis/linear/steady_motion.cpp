@@ -2,6 +2,7 @@
 #include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/analysis/linear/reduced_spectrum.h>
 #include <momenta/dae/analysis/linear/steady_motion.h>
+#include <momenta/dae/form/natural_sizes.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/mechanism/joint_places.h>
 #include <momenta/dae/topology/assembly/assembly.h>
@@ -111,6 +112,7 @@ double dust(const Reduced& r) {
 }
 
 std::vector<Mode> modes_of(const Reduced& r) {
+  if (r.system.rows() == 0) return {};
   const Eigen::EigenSolver<MatrixXd> solver(r.system);
   const Eigen::Index kept = r.kept.cols();
   std::vector<Mode> modes;
@@ -181,7 +183,7 @@ Spectrum steady_spectrum(const Mechanism& mechanism, const Start& start, SteadyM
   Spectrum found;
   motion = {start.t, start.q, start.u, start.lambda, 0, 0, 0};
   if (mechanism.nv() == 0) return found;
-  const double rate = default_leak(mechanism, start);
+  const double rate = own_rate(mechanism, start);
   const auto expect_steady = [&](const VectorXd& udot) {
     const double change = udot.cwiseQuotient(natural_units(mechanism)).cwiseAbs().maxCoeff();
     if (!(change <= same * rate * rate)) refuse_unsteady(mechanism, udot);

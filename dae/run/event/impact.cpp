@@ -79,7 +79,7 @@ double Impact::jump(double t, const Eigen::VectorXd& q, Eigen::VectorXd& u,
   const Eigen::VectorXd mean = u - 0.5 * w * impulse;
   u -= w * impulse;
   for (Eigen::Index i = 0; i < n; ++i) stops[static_cast<std::size_t>(i)].impulse = impulse[i];
-  if (mechanism_.scene().drives.empty()) {
+  if (!mechanism_.plan().drives) {
     double taken = 0;
     for (const StopAtImpact& s : stops) taken += s.impulse * s.side * mean[s.u];
     return taken;

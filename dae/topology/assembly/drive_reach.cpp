@@ -209,7 +209,7 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
 
 Assembly assemble_at(const Mechanism& mechanism, double t, Assembled what) {
   const Assembly start = assemble(mechanism, what);
-  if (t == 0 || (mechanism.scene().drives.empty() && !mechanism.plan().drives)) return start;
+  if (t == 0) return start;
   Eigen::VectorXd q = start.start.q;
   if (t > 0) {
     DriveReach reach = drive_reach(mechanism, 0, q, t, Followed::all);
