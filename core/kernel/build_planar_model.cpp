@@ -2,6 +2,7 @@
 // basis when every joint is at zero, where all constants are read off.
 
 #include <momenta/core/kernel/take_tree.h>
+#include <momenta/core/scene/formula.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,9 +54,17 @@ bool loads_across(const Tree& tree, const Scene& scene, const Eigen::Vector3d& n
   const auto across = [&](const Eigen::Vector3d& v) {
     return std::abs(v.dot(normal)) > angle_tolerance * v.norm();
   };
+  const FormulaReader reader(scene);
+  const auto pulls_across = [&](const Signal& s) {
+    return s.kind == Signal::Kind::length ||
+           (s.kind == Signal::Kind::position && std::abs(normal[s.component]) > angle_tolerance);
+  };
   return across(scene.gravity) ||
          std::any_of(scene.forces.begin(), scene.forces.end(), [&](const ForceSpec& f) {
-           if (f.kind == "potential") return true;
+           if (f.kind == "potential") {
+             const std::vector<Signal> signals = reader.read(f.law).signals;
+             return std::any_of(signals.begin(), signals.end(), pulls_across);
+           }
            if (f.kind == "wrench")
              return std::any_of(f.force_law.begin(), f.force_law.end(),
                                 [](const std::string& law) { return !law.empty(); }) ||

@@ -283,6 +283,29 @@ GradientMode gradient_mode(const std::string& name) {
 
 namespace {
 
+/// Refuses parameters that the scene's own end of the run follows: the end stays where it is. One
+/// reading of the scene with all of them moved, and one for each where the end moves.
+void expect_end_stays(const SceneText& scene, const Scene& own,
+                      const std::vector<RunVariable>& variables) {
+  const auto moves = [&](const std::vector<Setting>& settings) {
+    try {
+      return scene.scene(settings).run.end_time != own.run.end_time;
+    } catch (const SceneError&) {  // other parts of the scene have no such neighbour
+      return settings.size() > 1;
+    }
+  };
+  std::vector<Setting> all;
+  for (const RunVariable& v : variables)
+    if (v.kind == RunVariable::Kind::parameter)
+      all.push_back({v.name, v.value + sixth_order::part * v.size});
+  if (all.empty() || !moves(all)) return;
+  for (const Setting& one : all)
+    if (moves({one}))
+      throw SceneError(own.where({}) + "run.end follows " + reading::in_quotes(one.place) +
+                       ", and derivatives are at a fixed time; expected an end that is given apart "
+                       "(--end), or another parameter");
+}
+
 GradientResult by_one_run(const SceneText& scene, const GradientRequest& request,
                           bool& at_corners) {
   const Mechanism mechanism(scene.scene(), scene.options);
@@ -294,6 +317,8 @@ GradientResult by_one_run(const SceneText& scene, const GradientRequest& request
   result.settings = request.settings;
   result.variables = run_variables(scene, mechanism, request.by);
   RunSettings& s = result.settings;
+  if (request.times.empty() && s.end_time == mechanism.scene().run.end_time)
+    expect_end_stays(scene, mechanism.scene(), result.variables);
   s.when_stiff.clear();
   if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
   expect_differentiable(s, mechanism);

@@ -175,8 +175,9 @@ bool SwitchedRun::run(const EquationStart& first, EquationRun& run) {
       return true;
     }
     for (std::size_t i = 0; i < turns_.which.size(); ++i) mode(turns_.which[i]) = turns_.modes[i];
-    const std::string why = begin_anew(start);
-    if (!why.empty()) return as_written(spent(), run) || stop(turns_.t, why, run);
+    bool jumps = false;
+    const std::string why = begin_anew(start, jumps);
+    if (!why.empty()) return (!jumps && as_written(spent(), run)) || stop(turns_.t, why, run);
   }
   if (run.done || run.reason == "interrupted" || run.reason.rfind("time limit", 0) == 0)
     return true;
@@ -274,7 +275,7 @@ void SwitchedRun::find_turns(double t0, double t1, const Interpolant& between) {
   if (turns_.t >= request_.end - 10 * tolerance_) turns_.which.clear();
 }
 
-std::string SwitchedRun::begin_anew(EquationStart& start) {
+std::string SwitchedRun::begin_anew(EquationStart& start, bool& jumps) {
   const std::string where = in_words(turns_.which.front());
   try {
     start = equation_start(held_);
@@ -288,6 +289,7 @@ std::string SwitchedRun::begin_anew(EquationStart& start) {
            std::to_string(start.point.found.index) + ", expected up to " +
            std::to_string(most_index());
   if (const int j = jumping(start); j >= 0) {
+    jumps = true;
     const auto at = static_cast<std::size_t>(j);
     return where + " makes " + held_.variables[at] + " jump from " + compact(held_.values[at], 6) +
            " to " + compact(start.point.y[j], 6) +

@@ -50,8 +50,9 @@ class SwitchedRun {
   void find_turns(double t0, double t1, const Interpolant& between);
   /// Runs to a turn: true; or to the end of the run. `spent_s`: CPU time before.
   bool piece(const EquationStart& start, double spent_s, EquationRun& run);
-  /// Start of held_ where the last piece ended; a sentence if there is none, or values would jump.
-  std::string begin_anew(EquationStart& start);
+  /// Start of held_ where the last piece ended; a sentence if there is none, or values would
+  /// jump, whatever the formulas as written say of the moment itself.
+  std::string begin_anew(EquationStart& start, bool& jumps);
   /// Variable with a rate whose value would jump from held_ to the start; −1: none.
   int jumping(const EquationStart& start) const;
   /// Continues from there with the formulas as written. False: they have no start there.

@@ -620,6 +620,93 @@ TEST(Gradient, RefusesJumpsThatTheMotionPasses) {
         << law;
 }
 
+/// Forces that no formula has jump too: of energies with corners, of a bushing at half a turn, of a
+/// spring whose ends pass each other; and tan at its poles.
+TEST(Gradient, RefusesJumpsOfForcesWithoutAFormula) {
+  const auto pushed = [](const std::string& force) {
+    return "[parameters]\nF = 3\nw = 2\n" + slide +
+           "velocity = \"w\"\nposition = -0.6\n[[force]]\n" + force;
+  };
+  const auto swung = [](const std::string& force) {
+    return "[parameters]\nF = 3\nw = 8\n[[body]]\nname = \"b\"\nmass = 1\ninertia = "
+           "0.4\n[[joint]]\nname = \"X\"\nkind = \"revolute\"\nchild = \"b\"\nvelocity = "
+           "\"w\"\nposition = 2\n[[force]]\n" +
+           force;
+  };
+  const auto by_lagrangian = [](const std::string& energy) {
+    return "[parameters]\nF = 3\nw = 2\n[lagrangian]\ncoordinates = [\"X\"]\nvelocity = "
+           "[\"w\"]\nposition = [-0.6]\nkinetic = \"X.dot^2/2\"\npotential = \"" +
+           energy + "\"\n";
+  };
+  const std::string spring = "kind = \"spring-damper\"\nchild = \"m\"\nstiffness = \"F\"\n",
+                    bushing = "kind = \"bushing\"\nchild = \"b\"\nrotational_stiffness = ",
+                    potential = "kind = \"potential\"\nV = ";
+  struct Row {
+    std::string text, of;
+    bool refused;
+  };
+  for (const auto& [text, of, refused] : std::vector<Row>{
+           {pushed(spring + "rest = 0.5\n"), "X.q", true},
+           {pushed(spring), "X.q", false},
+           {pushed(spring + "rest = 0.5\norigin = { parent = [0, 0.1, 0] }\n"), "X.q", false},
+           {pushed(potential + "\"F*max(X.q - 0.2, 0)\"\n"), "X.q", true},
+           {pushed(potential + "\"F*sqrt((X.q - 0.2)^2)\"\n"), "X.q", true},
+           {pushed(potential + "\"F*max(X.q - 0.2, 0)^2\"\n"), "X.q", false},
+           {pushed(potential + "\"F*max(X.q - 9, 0)\"\n"), "X.q", false},
+           {by_lagrangian("F*abs(X - 0.2)"), "X", true},
+           {by_lagrangian("F*abs(X - 0.2)^3"), "X", false},
+           {swung(bushing + "\"F\"\n"), "X.q", true},
+           {swung(bushing + "\"F\"\nrotation = { axis = [0, 0, 1], angle = 3 }\n"), "X.q", false},
+           {swung("kind = \"torque\"\njoint = \"X\"\nlaw = \"-F*atan(tan(q/2))\"\n"), "X.q",
+            true}}) {
+    if (!refused) {
+      expect_runs(text, adaptive(of, {"F", "w"}, "momentum", 0.7), 1e-4, 1e-5);
+      continue;
+    }
+    for (const char* form : {"momentum", "acceleration"})
+      EXPECT_TRUE(equations::says(
+          equations::thrown<SceneError>([&] {
+            gradient(of_text(text), adaptive(of, {"F", "w"}, form, 0.7, "dop853", 1e-8));
+          }),
+          " jumps from "))
+          << text;
+  }
+}
+
+/// What nothing moves freely in has gradients of what drives do.
+TEST(Gradient, OfWhatDrivesDoAlone) {
+  const SceneText scene = of_text(
+      "[parameters]\na = 0.7\n[[body]]\nname = \"b\"\nmass = 2\ninertia = 0.4\n[[joint]]\nname = "
+      "\"X\"\nkind = \"revolute\"\nchild = \"b\"\n[[drive]]\njoint = \"X\"\nkind = "
+      "\"polynomial\"\ncoefficients = [0, 0, \"a\"]\n[[marker]]\nname = \"P\"\nbody = "
+      "\"b\"\npoint = [1, 0, 0]\n");
+  for (const char* form : {"momentum", "acceleration", "projected", "baumgarte"}) {
+    const double angle = 0.7 * 0.25;
+    EXPECT_NEAR(gradient(scene, adaptive("P.x", {"a"}, form, 0.5)).gradient[0],
+                -0.25 * std::sin(angle), 1e-10)
+        << form;
+    // 0.2 (2 a t)², with t = 0.5
+    EXPECT_NEAR(gradient(scene, adaptive("energy", {"a"}, form, 0.5)).gradient[0], 0.4 * 0.7, 1e-9)
+        << form;
+  }
+  GradientRequest request = adaptive("P.x", {"a"}, "momentum", 0.5);
+  request.mode = GradientMode::adjoint;
+  EXPECT_TRUE(
+      equations::says(equations::thrown<std::invalid_argument>([&] { gradient(scene, request); }),
+                      "nothing moves freely"));
+}
+
+TEST(Gradient, RefusesParametersThatMoveTheEnd) {
+  const SceneText scene = of_text("[parameters]\nw = 2\nk = 9\n" + slide +
+                                  "velocity = 1\nstiffness = \"k\"\n[run]\nend = \"2*w\"\n");
+  EXPECT_TRUE(equations::says(equations::thrown<SceneError>([&] {
+                                gradient(scene, adaptive("X.q", {"k", "w"}, "momentum", 4));
+                              }),
+                              "run.end follows 'w'"));
+  EXPECT_NO_THROW(gradient(scene, adaptive("X.q", {"k"}, "momentum", 4)));
+  EXPECT_NO_THROW(gradient(scene, adaptive("X.q", {"w"}, "momentum", 3)));
+}
+
 /// A force or a law that jumps at a time that a number decides on, by that number alone.
 // Where the motion rests, or an integrand is faster than it, its own steps say nothing of either.
 TEST(Gradient, FollowsTangentsAndIntegrandsWhereTheMotionRests) {

@@ -8,6 +8,7 @@
 #include "equations/parts.h"
 #include "equations/planar_pins.h"
 #include "equations/refusal.h"
+#include "equations/runs.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -337,6 +338,48 @@ TEST(Bearings, MomentsOfAClosedPlanarChainAreNotUnique) {
   const Mechanism open(scene);
   EXPECT_FALSE(open.plan().planar);
   EXPECT_EQ(open.plan().planar_reason, "the bearing of joint 'A' carries moments out of the plane");
+}
+
+/// A slide on a table carries the weight: x = v t − μ g t²/2. Beside a hinge about the normal too;
+/// with all loads in the plane the scene stays there.
+TEST(Bearings, OfSlidesCarryLoadsAcrossThePlane) {
+  const auto table = [](const std::string& second, const std::string& more) {
+    return parse_scene(
+        "gravity = [0, 0, -9.81]\n[[body]]\nname = \"a\"\nmass = 1\ninertia = [0.1, 0.1, "
+        "0.1]\n[[body]]\nname = \"b\"\nmass = 2\ninertia = [0.1, 0.1, 0.1]\n[[joint]]\nname = "
+        "\"A\"\nkind = \"prismatic\"\naxis = \"x\"\nchild = \"a\"\nvelocity = 3\nbearing = { "
+        "dynamic = 0.2 }\n[[joint]]\nname = \"B\"\nparent = \"a\"\nchild = \"b\"\n" +
+        second + more);
+  };
+  for (const std::string second :
+       {"kind = \"prismatic\"\naxis = \"y\"\n", "kind = \"revolute\"\naxis = \"z\"\n"}) {
+    const Mechanism mechanism(table(second, ""));
+    EXPECT_EQ(mechanism.plan().planar_reason,
+              "the bearing of joint 'A' carries loads out of the plane");
+    const RunResult run =
+        run_form(mechanism, equations::start_of(mechanism),
+                 equations::kept(equations::adaptive("momentum", "", "", 1e-9, 1, 2)));
+    EXPECT_EQ(run.status, "done") << run.reason;
+    EXPECT_NEAR(run.trajectory.rows.back()[1], 3 - 0.1 * 9.81, 1e-6) << second;
+    Scene flat = table(second, "");
+    flat.gravity = {0, -9.81, 0};
+    EXPECT_TRUE(Mechanism(flat).plan().planar);
+    const auto beside = [&](const std::string& force) {
+      Scene s = table(second, "[[force]]\n" + force);
+      s.gravity.setZero();
+      return Mechanism(s).plan().planar;
+    };
+    EXPECT_TRUE(beside("kind = \"wrench\"\nbody = \"b\"\nforce = [1, 2, 0]\n"));
+    EXPECT_FALSE(beside("kind = \"wrench\"\nbody = \"b\"\nforce = [1, 2, 0.1]\n"));
+    EXPECT_TRUE(beside("kind = \"spring-damper\"\nchild = \"b\"\nstiffness = 3\n"));
+    EXPECT_FALSE(
+        beside("kind = \"spring-damper\"\nchild = \"b\"\nstiffness = 3\norigin = { "
+               "parent = [0, 0, 1] }\n"));
+    EXPECT_TRUE(beside("kind = \"potential\"\nV = \"A.q^2\"\n"));
+    EXPECT_FALSE(
+        beside("kind = \"potential\"\nV = \"P.z\"\n[[marker]]\nname = \"P\"\nbody = "
+               "\"b\"\n"));
+  }
 }
 
 TEST(Bearings, FormsWithoutAccelerationsRefuse) {

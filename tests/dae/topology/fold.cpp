@@ -207,13 +207,13 @@ TEST(Fold, WeldedBodiesMoveWithTheirCarriers) {
 TEST(Fold, LoopsOfWeldedBodiesHoldTheirCarriers) {
   std::map<LoopKind, int> compared, turned;
   int stayed = 0, driven = 0;
-  for (unsigned seed = 0; seed < 900; ++seed) {
+  for (unsigned seed = 0; seed < 1200; ++seed) {
     RandomTree random(1000 + seed);
     Scene scene = welded(random, false, 8);
     const LoopKind kind = loop_kinds[seed % loop_kinds.size()];
     const LoopSpec loop = closed_loop(random, scene, kind, poses_of(scene));
     scene.loops.push_back(loop);
-    if (seed % 2 == 0) drive_closed(random, scene, loop);
+    if (seed / 2 % 2 == 0) drive_closed(random, scene, loop);
     if (const auto coupler = random_coupler(random, scene)) {
       LoopSpec c = *coupler;
       const Mechanism mechanism(scene);
