@@ -323,6 +323,19 @@ TEST(LinearModels, RefuseSingularPosesAndWhatIsNotThere) {
             std::string::npos);
 }
 
+/// q" = −(1 + t) q − 0.1 t q̇ − 2 t q at t = 3, where nothing is driven.
+TEST(LinearModels, AreAboutTheTimeThatIsAskedFor) {
+  const Mechanism mechanism(parse_scene(
+      "[[body]]\nname = \"m\"\nmass = 1\ninertia = 1\n[[joint]]\nname = \"X\"\nkind = "
+      "\"prismatic\"\nchild = \"m\"\n[[force]]\nkind = \"torque\"\njoint = \"X\"\nlaw = \"-(1 + "
+      "t)*q - 0.1*t*u\"\n[[force]]\nkind = \"potential\"\nV = \"t*X.q^2\"\n"));
+  const Assembly at = assemble_at(mechanism, 3);
+  EXPECT_EQ(at.start.t, 3);
+  Eigen::Matrix2d known;
+  known << 0, 1, -10, -0.3;
+  EXPECT_LT((linear_model(mechanism, at.start, {}).A - known).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(LinearModels, TakeTheCoordinatesThatAreNamed) {
   const Mechanism mechanism(marked_four_bar());
   const Start at = later(mechanism, 0.37);

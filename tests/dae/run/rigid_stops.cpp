@@ -178,6 +178,33 @@ TEST(RigidStops, ImpactsAreThoseOfDenseMatrices) {
     }
 }
 
+// A slide that an equation moves in time, or a coupler with a drive the same way, between stops:
+// the guide's work at an impact counts.
+TEST(RigidStops, TheWorkOfWhatMovesInTimeCounts) {
+  const std::string bodies =
+      "gravity = [0, -9.81, 0]\n[[body]]\nname = \"x\"\nmass = 2\ninertia = 1\n[[body]]\nname = "
+      "\"y\"\nmass = 1\ninertia = 1\n[[joint]]\nname = \"X\"\nkind = \"prismatic\"\nchild = "
+      "\"x\"\naxis = \"x\"\n[[joint]]\nname = \"Y\"\nkind = \"prismatic\"\naxis = \"y\"\nparent = "
+      "\"x\"\nchild = \"y\"\nposition = 0.5\nlimits = [0, 1]\nrestitution = 0.7\n[[loop]]\nname = "
+      "\"E\"\n";
+  std::vector<double> ends;
+  for (const std::string loop :
+       {"kind = \"equation\"\nequation = \"X.q - 0.5*sin(3*t) - 0.4*Y.q + 0.2\"\n",
+        "kind = \"coupler\"\njoints = [\"X\", \"Y\"]\nratios = [1, -0.4]\n[[drive]]\nloop = "
+        "\"E\"\nkind = \"harmonic\"\namplitude = 0.5\nfrequency = 3\noffset = -0.2\n"}) {
+    const Mechanism mechanism(parse_scene(bodies + loop));
+    const RunResult run =
+        run_form(mechanism, equations::start_of(mechanism),
+                 equations::kept(equations::adaptive("momentum", "", "", 1e-10, 1.5, 3)));
+    EXPECT_EQ(run.status, "done") << run.reason;
+    EXPECT_EQ(run.departure, "");
+    EXPECT_FALSE(run.stops.empty());
+    EXPECT_LT(run.energy_error_max, 1e-7);
+    ends.push_back(run.trajectory.rows.back()[2]);
+  }
+  EXPECT_NEAR(ends[0], ends[1], 1e-7);
+}
+
 // The rocker of a four-bar between stops: the same impacts in every form, and no energy lost at
 // e = 1 but what the integrators lose.
 TEST(RigidStops, OfAFourBarAreTheSameInEveryForm) {
