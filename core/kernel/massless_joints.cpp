@@ -218,19 +218,11 @@ std::vector<MasslessJoint> massless_joints(const Tree& tree, const double* q,
 std::string without_inertia(const Tree& tree, const std::vector<MasslessJoint>& joints) {
   const std::vector<int> bodies = one_a_joint(tree, joints);
   if (bodies.size() == 1) return tree.joint_in_words(bodies[0]) + " has no inertia";
-  const auto body = [&](std::size_t i) -> const Tree::Body& {
-    return tree.bodies[static_cast<std::size_t>(bodies[i])];
-  };
-  bool loops = false;
-  for (std::size_t i = 0; i < bodies.size(); ++i) loops |= body(i).of_loop;
   std::string names;
-  for (std::size_t i = 0; i < bodies.size() && i < most_named; ++i) {
-    names += i == 0 ? "" : ", ";
-    if (loops) names += body(i).of_loop ? "loop " : "joint ";
-    names += "'" + body(i).joint + "'";
-  }
+  for (std::size_t i = 0; i < bodies.size() && i < most_named; ++i)
+    names += (i == 0 ? "'" : ", '") + tree.bodies[static_cast<std::size_t>(bodies[i])].joint + "'";
   if (bodies.size() > most_named) names += ", … (" + std::to_string(bodies.size()) + ")";
-  return (loops ? "" : "joints ") + names + " have no inertia";
+  return "joints " + names + " have no inertia";
 }
 
 std::string in_words(const Tree& tree, const std::vector<MasslessJoint>& joints,

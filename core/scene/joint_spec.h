@@ -106,8 +106,7 @@ struct JointSpec {
   /// Rigid stops at the limits instead: the rate after an impact is −restitution times that before,
   /// 0 to 1. For revolute, helical and prismatic joints with limits; no number: no such stops.
   std::optional<double> restitution;
-  bool of_loop = false;  ///< written as a loop, which a recut made a joint: messages call it so
-  Location at;           ///< where the file has it
+  Location at;  ///< where the file has it
 };
 
 /// Size of q of a joint, by its kind or its law.

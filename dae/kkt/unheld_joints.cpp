@@ -200,8 +200,7 @@ std::string light_before_loops(const Mechanism& mechanism, int rate) {
     const Tree::Body& b = mechanism.tree().bodies[k];
     if (rate >= b.u && rate < b.u + b.nv)
       return mechanism.tree().joint_in_words(static_cast<int>(k)) +
-             (b.of_loop ? " has no inertia before the other loops close"
-                        : " has no inertia before its loops close");
+             " has no inertia before its loops close";
   }
   return "";
 }

@@ -57,8 +57,7 @@ void blank(const UnheldJoints& unheld, Eigen::VectorXd& x);
 std::string no_inertia(const Mechanism& mechanism, int rate, double t, const double* q,
                        bool by_form = false);
 
-/// "joint 'A' has no inertia before its loops close", for the joint at place `rate` in u; "loop 'B'
-/// has no inertia before the other loops close" for one that was a loop.
+/// "joint 'A' has no inertia before its loops close", for the joint at place `rate` in u.
 std::string light_before_loops(const Mechanism& mechanism, int rate);
 
 }  // namespace momenta

@@ -151,7 +151,6 @@ class TreeBuilder {
       const Part& part = parts[i];
       Tree::Body b;
       b.joint = joint.name;
-      b.of_loop = joint.of_loop;
       b.part = static_cast<int>(i);
       b.parts = static_cast<int>(parts.size());
       b.coordinate = part.coordinate;
@@ -287,7 +286,7 @@ int Tree::part_of(const std::string& joint_name, int coordinate) const {
 
 std::string Tree::joint_in_words(int k) const {
   const Body& b = bodies[static_cast<std::size_t>(k)];
-  const std::string joint = (b.of_loop ? "loop '" : "joint '") + b.joint + "'";
+  const std::string joint = "joint '" + b.joint + "'";
   return b.parts == 1 ? joint : "coordinate " + std::to_string(b.coordinate) + " of " + joint;
 }
 

@@ -22,13 +22,12 @@ struct Tree {
   /// part carries the scene's body; those before carry bodies without name, mass or extent, whose
   /// scene axes are the joint axes of the part.
   struct Body {
-    std::string name;      ///< the scene's body; empty for all but the last part
-    std::string joint;     ///< the scene's joint that carries it
-    bool of_loop = false;  ///< as in JointSpec
-    int part = 0;          ///< place of this part in its joint: 0, 1, …
-    int parts = 1;         ///< number of parts of that joint
-    int coordinate = 0;    ///< coordinate of its joint that the part moves; 0 with quaternions
-    int parent = -1;       ///< −1: ground
+    std::string name;    ///< the scene's body; empty for all but the last part
+    std::string joint;   ///< the scene's joint that carries it
+    int part = 0;        ///< place of this part in its joint: 0, 1, …
+    int parts = 1;       ///< number of parts of that joint
+    int coordinate = 0;  ///< coordinate of its joint that the part moves; 0 with quaternions
+    int parent = -1;     ///< −1: ground
     JointKind kind = JointKind::revolute;  ///< kind of this part
     int drive = -1;  ///< index into drives; then q and u of the joint are prescribed, nq = nv = 0
     int q = 0;       ///< first of its coordinates in q
@@ -89,8 +88,7 @@ struct Tree {
     const Body& b = bodies[static_cast<std::size_t>(k)];
     return b.part + 1 == b.parts;
   }
-  /// "joint 'O'", or "coordinate 1 of joint 'O'" where the joint has several parts; "loop 'B'" of
-  /// one that was a loop. For messages.
+  /// "joint 'O'", or "coordinate 1 of joint 'O'" where the joint has several parts. For messages.
   std::string joint_in_words(int k) const;
   /// Normalises the quaternions in q (nq).
   void normalise(Eigen::VectorXd& q) const {

@@ -101,7 +101,6 @@ namespace {
 JointSpec with_frames_of(const LoopSpec& loop, JointKind kind) {
   JointSpec joint;
   joint.name = loop.name;
-  joint.of_loop = true;
   joint.kind = kind;
   joint.parent = loop.parent;
   joint.child = loop.child;

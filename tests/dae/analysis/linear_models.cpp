@@ -13,6 +13,7 @@
 #include <momenta/dae/analysis/linear/linearisation.h>
 #include <momenta/dae/run/state_after.h>
 #include <momenta/dae/study/modes_study.h>
+#include <momenta/dae/topology/assembly/drive_reach.h>
 
 #include <Eigen/Dense>
 #include <complex>

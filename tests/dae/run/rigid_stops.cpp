@@ -194,7 +194,7 @@ TEST(RigidStops, TheWorkOfWhatMovesInTimeCounts) {
         "\"E\"\nkind = \"harmonic\"\namplitude = 0.5\nfrequency = 3\noffset = -0.2\n"}) {
     const Mechanism mechanism(parse_scene(bodies + loop));
     const RunResult run =
-        run_form(mechanism, equations::start_of(mechanism),
+        run_form(mechanism, assemble(mechanism).start,
                  equations::kept(equations::adaptive("momentum", "", "", 1e-10, 1.5, 3)));
     EXPECT_EQ(run.status, "done") << run.reason;
     EXPECT_EQ(run.departure, "");
