@@ -1,4 +1,3 @@
-#include <momenta/core/expression/tape.h>
 #include <momenta/core/scene/lagrangian/lagrangian_model.h>
 #include <momenta/core/text/quoting.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
@@ -7,7 +6,6 @@
 #include <momenta/dae/mechanism/tree_factor.h>
 
 #include <algorithm>
-#include <span>
 
 namespace momenta {
 namespace {
@@ -15,21 +13,6 @@ namespace {
 /// Least pivot of Φ_q M⁻¹ Φ_qᵀ relative to its group's scale: rounding in dependent rows must ask
 /// for no multiplier.
 constexpr double dependent_rows = 1e-10;
-
-/// The first constraint of a Lagrangian that takes the time. @pre there is one
-std::string moving_constraint(const Mechanism& mechanism) {
-  const LagrangianModel& model = mechanism.lagrangian();
-  const formula::Tape tape(model.positions.tape());
-  const auto takes_time = [&](int place) {
-    const std::vector<int> in = Expression(tape, std::span(&place, 1)).variables();
-    return std::find(in.begin(), in.end(), model.time()) != in.end();
-  };
-  const auto& places = model.positions.outputs();
-  const auto found = std::find_if(places.begin(), places.end(), takes_time) - places.begin();
-  const auto& constraint =
-      mechanism.scene().lagrangian->constraints.at(static_cast<std::size_t>(found));
-  return "constraint " + reading::in_quotes(constraint.name) + ", which takes the time";
-}
 
 class MechanismPlace final : public HamiltonianPlace {
  public:
@@ -128,16 +111,13 @@ HamiltonianParts::Work& HamiltonianParts::parts() {
 
 std::string HamiltonianParts::prescribed() const {
   const Scene& scene = system_.scene();
-  if (scene.lagrangian) return system_.lagrangian().moving ? moving_constraint(system_) : "";
+  if (scene.lagrangian)
+    return system_.lagrangian().moving ? "a constraint that takes the time" : "";
   if (!system_.plan().drives) return "";
-  if (!scene.drives.empty()) {
-    const DriveSpec& drive = scene.drives.front();
-    return "the drive of " + (drive.joint.empty() ? "loop " + reading::in_quotes(drive.loop)
-                                                  : "joint " + reading::in_quotes(drive.joint));
-  }
-  for (const JointSpec& joint : scene.joints)
-    if (joint.law) return "the formula of joint " + reading::in_quotes(joint.name);
-  return "a loop equation that takes the time";
+  if (scene.drives.empty()) return "a joint or a loop whose formula takes the time";
+  const DriveSpec& drive = scene.drives.front();
+  return "the drive of " + (drive.joint.empty() ? "loop " + reading::in_quotes(drive.loop)
+                                                : "joint " + reading::in_quotes(drive.joint));
 }
 
 std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {
