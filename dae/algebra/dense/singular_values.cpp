@@ -1,8 +1,8 @@
 #include <momenta/dae/algebra/dense/singular_values.h>
 
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
+#include <Eigen/QR>
+#include <algorithm>
+#include <limits>
 
 template class Eigen::BDCSVD<Eigen::MatrixXd>;
 template class Eigen::JacobiSVD<Eigen::MatrixXd>;
@@ -10,26 +10,29 @@ template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 namespace momenta {
 namespace {
 
-#ifdef __SSE2__
-constexpr bool can_flush = true;
-/// While it lives, numbers below the least normal one are zero.
-class Flushed {
- public:
-  Flushed() : before_(_mm_getcsr()) {
-    constexpr unsigned results = 0x8000, operands = 0x0040;
-    _mm_setcsr(before_ | results | operands);
+/// Of the matrix with this QR, whose pivots from `rank` on are rounding.
+SingularValues of_regular_part(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
+                               Eigen::Index rank) {
+  SingularValues all;
+  const Eigen::MatrixXd& r = qr.matrixQR();
+  all.values.setZero(std::min(r.rows(), r.cols()));
+  all.u.setIdentity(r.rows(), r.rows());
+  all.v.setIdentity(r.cols(), r.cols());
+  if (rank > 0) {
+    const Eigen::MatrixXd upper = r.topRows(rank).triangularView<Eigen::Upper>();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> right(upper.transpose());
+    const Eigen::MatrixXd lower =
+        Eigen::MatrixXd(right.matrixQR().topRows(rank).triangularView<Eigen::Upper>()).transpose();
+    const SingularValues inner(lower);
+    all.values.head(rank) = inner.values;
+    all.u.topLeftCorner(rank, rank) = inner.u;
+    all.v.topLeftCorner(rank, rank) = inner.v;
+    all.v.applyOnTheLeft(right.householderQ());
   }
-  ~Flushed() { _mm_setcsr(before_); }
-  Flushed(const Flushed&) = delete;
-  Flushed& operator=(const Flushed&) = delete;
-
- private:
-  unsigned before_;
-};
-#else
-constexpr bool can_flush = false;
-struct Flushed {};
-#endif
+  all.u.applyOnTheLeft(qr.householderQ());
+  all.v = (qr.colsPermutation() * all.v).eval();
+  return all;
+}
 
 }  // namespace
 
@@ -44,11 +47,21 @@ SingularValues::SingularValues(const Eigen::MatrixXd& a, unsigned options) {
     return (product - a).norm() <= rounding * a.norm() && u.isUnitary(rounding) &&
            v.isUnitary(rounding);
   };
-  if constexpr (can_flush) {
-    [[maybe_unused]] const Flushed flushed{};
-    if (take(Eigen::BDCSVD<Eigen::MatrixXd>(a, options))) return;
+  if (a.size() > 0 && a.allFinite()) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
+    const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
+    const Eigen::Index most = std::min(a.rows(), a.cols());
+    const double none = std::numeric_limits<double>::epsilon() *
+                        static_cast<double>(std::max(a.rows(), a.cols())) * pivots[0];
+    if (const Eigen::Index rank = (pivots.array() > none).count(); rank < most) {
+      *this = of_regular_part(qr, rank);
+      if (options & Eigen::ComputeThinU) u = u.leftCols(most).eval();
+      if (options & Eigen::ComputeThinV) v = v.leftCols(most).eval();
+      return;
+    }
   }
-  take(Eigen::JacobiSVD<Eigen::MatrixXd>(a, options));
+  if (!take(Eigen::BDCSVD<Eigen::MatrixXd>(a, options)))
+    take(Eigen::JacobiSVD<Eigen::MatrixXd>(a, options));
 }
 
 Eigen::Index SingularValues::rank(double part) const {

@@ -1,9 +1,9 @@
 #pragma once
 // Singular values of dense matrices: Eigen's divide and conquer, which (3.4) errs on some with many
-// singular values that are zero, up to NaN; so its product is compared with the matrix, and where
-// it is another, the rotations of Jacobi take its place. It takes entries below the least normal
-// number for zeros in one place and not in another, and reads out of bounds there: they are flushed
-// to zero, and where a processor cannot, Jacobi alone serves. Half a minute of compilation, once.
+// singular values that are zero, up to NaN and to reading out of bounds. So QR with pivots takes
+// these off, A P = Q (R; 0) and Rᵀ = Z (Lᵀ; 0): values that are rounding are zero, and L is
+// regular. Where the product is another matrix all the same, the rotations of Jacobi serve. Half a
+// minute of compilation, once.
 
 #include <Eigen/SVD>
 
