@@ -41,16 +41,30 @@ Vec2<double> vec2(const Eigen::Vector3d& v) {
   return {{v.x(), v.y()}};
 }
 
+/// Places of points of the scene's bodies, and directions, when every joint is at zero.
+class ZeroPlaces {
+ public:
+  explicit ZeroPlaces(const Tree& tree) : tree_(tree), poses_(tree.zero_poses()) {}
+  Eigen::Vector3d direction(const std::string& name, const Eigen::Vector3d& v) const {
+    return pose(name).linear() * tree_.direction(tree_.body(name), v);
+  }
+  Eigen::Vector3d operator()(const std::string& name, const Eigen::Vector3d& point) const {
+    return pose(name) * tree_.point(tree_.body(name), point);
+  }
+
+ private:
+  Eigen::Isometry3d pose(const std::string& name) const {
+    const int body = tree_.body(name);
+    return body < 0 ? Eigen::Isometry3d::Identity() : poses_[static_cast<std::size_t>(body)];
+  }
+
+  const Tree& tree_;
+  std::vector<Eigen::Isometry3d> poses_;
+};
+
 /// Whether gravity or a force may act along the normal, at zero positions and so at all.
 bool loads_across(const Tree& tree, const Scene& scene, const Eigen::Vector3d& normal) {
-  const auto poses = tree.zero_poses();
-  const auto pose = [&](const std::string& name) {
-    const int body = tree.body(name);
-    return body < 0 ? Eigen::Isometry3d::Identity() : poses[static_cast<std::size_t>(body)];
-  };
-  const auto place = [&](const std::string& name, const Eigen::Vector3d& point) {
-    return Eigen::Vector3d(pose(name) * tree.point(tree.body(name), point));
-  };
+  const ZeroPlaces place(tree);
   const auto across = [&](const Eigen::Vector3d& v) {
     return std::abs(v.dot(normal)) > angle_tolerance * v.norm();
   };
@@ -65,14 +79,40 @@ bool loads_across(const Tree& tree, const Scene& scene, const Eigen::Vector3d& n
              const std::vector<Signal> signals = reader.read(f.law).signals;
              return std::any_of(signals.begin(), signals.end(), pulls_across);
            }
-           if (f.kind == "wrench")
-             return std::any_of(f.force_law.begin(), f.force_law.end(),
-                                [](const std::string& law) { return !law.empty(); }) ||
-                    across(f.in_body_axes ? Eigen::Vector3d(pose(f.body).linear() * f.force)
-                                          : f.force);
+           if (f.kind == "wrench") {
+             Eigen::Vector3d force = f.force;
+             for (int i = 0; i < 3; ++i)
+               if (!f.force_law[static_cast<std::size_t>(i)].empty()) force[i] = 1;
+             return across(f.in_body_axes ? place.direction(f.body, force) : force);
+           }
            return !f.child.empty() &&
                   across(place(f.child, f.origin_child) - place(f.parent, f.origin_parent));
          });
+}
+
+/// Whether masses, loops and forces lie in one plane, with the joint's point, so that none of them
+/// has a moment across it.
+bool is_flat(const Tree& tree, const Scene& scene, const JointSpec& joint,
+             const Eigen::Vector3d& normal) {
+  const ZeroPlaces place(tree);
+  const Eigen::Vector3d from = place(joint.child, joint.origin_child);
+  const auto level = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d arm = point - from;
+    return std::abs(arm.dot(normal)) <= angle_tolerance * arm.norm();
+  };
+  for (const BodySpec& b : scene.bodies) {
+    Eigen::Vector3d n;  // in its axes
+    for (int i = 0; i < 3; ++i)
+      n[i] = normal.dot(place.direction(b.name, Eigen::Vector3d::Unit(i)));
+    if (b.mass > 0 && !level(place(b.name, b.com))) return false;
+    if ((b.inertia * n).cross(n).norm() > angle_tolerance * b.inertia.norm()) return false;
+  }
+  for (const LoopSpec& l : scene.loops)
+    if (ties_bodies(l) && !level(place(l.child, l.origin_child))) return false;
+  return std::all_of(scene.forces.begin(), scene.forces.end(), [&](const ForceSpec& f) {
+    if (f.kind == "wrench") return level(place(f.body, f.point));
+    return f.child.empty() || level(place(f.child, f.origin_child));
+  });
 }
 
 }  // namespace
@@ -108,7 +148,8 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
     if (f.kind == "bushing" && f.rotational_stiffness != 0)
       return {{}, with_ends("bushing", f) + " has a rotational stiffness, which only space has"};
   for (const JointSpec& joint : scene.joints)
-    if (joint.bearing && joint.bearing->length > 0)
+    if (joint.bearing && joint.bearing->length > 0 &&
+        (joint.kind == JointKind::revolute || !is_flat(tree, scene, joint, *normal)))
       return {{}, "the bearing of joint '" + joint.name + "' carries moments out of the plane"};
   for (const JointSpec& joint : scene.joints)
     if (joint.bearing && joint.kind == JointKind::prismatic && loads_across(tree, scene, *normal))

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int pieces = 8, halvings = 24;
+constexpr int pieces = 8, halvings = 24, steep = 10;
 
 /// Whether the derivative of an operation may jump.
 bool may_turn(formula::Operation o) {
@@ -120,14 +120,14 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
     const LagrangianSpec& l = *scene.lagrangian;
     for (const LagrangianSpec::Force& force : l.forces)
       if (may_jump(force.value.text, scene, others)) watch(force.value.text, force.value.text);
+    whole = !l.forces.empty();
     for (const std::string& energy : {l.lagrangian.text, l.kinetic.text, l.potential.text})
       whole |= !energy.empty() && may_jump(energy, scene, others, true);
   }
   for (std::size_t i = 0; i < scene.forces.size(); ++i) {
     const ForceSpec& force = scene.forces[i];
     // θ of a bushing turns over at half a turn, the direction of a spring at length zero.
-    whole |= force.rotational_stiffness != 0 ||
-             (force.kind == "spring-damper" && (force.rest != 0 || !force.law.empty()));
+    whole |= force.rotational_stiffness != 0 || (force.kind == "spring-damper" && force.rest != 0);
     const bool potential = force.kind == "potential";
     const std::vector<OwnName> own = reader.own_names(force);
     each_formula(force, [&](const std::string& key, const std::string& law) {
@@ -140,10 +140,8 @@ LawJumps::LawJumps(const Mechanism& mechanism, const std::vector<Scene>& others,
             near.push_back(readers[k].read(its_law, readers[k].own_names(its)).expression);
         });
       }
-      if (potential) {
-        whole |= may_jump(formula, near, true);
-        return;
-      }
+      whole |= !potential || may_jump(formula, near, true);
+      if (potential) return;
       if (calls_points(formula) || !may_jump(formula, near)) return;
       std::vector<std::string> names;
       for (const Signal& signal : formula.signals) names.push_back(in_words(scene, signal));
@@ -179,14 +177,17 @@ namespace {
 
 struct Jump {
   double t, from, to;
+  double within;  ///< [s]; 0: not continuous
 };
 
 /// A jump of number k of at(t, numbers) in a part of a step. Numbers that are continuous keep 2⁻²⁴
-/// of their first change, or that of their steepest place.
+/// of their first change, or that of their steepest place. One that has most of its change in a
+/// thousandth of the step is as steep as a jump to methods that see its ends.
 template <class At>
 std::optional<Jump> jump_in(double from, double to, VectorXd low, VectorXd high, Eigen::Index k,
                             const At& at) {
   const double first = std::abs(high[k] - low[k]);
+  std::optional<Jump> found;
   VectorXd middle;
   for (int i = 0; i < halvings; ++i) {
     const double half = 0.5 * (from + to);
@@ -198,14 +199,20 @@ std::optional<Jump> jump_in(double from, double to, VectorXd low, VectorXd high,
       low = middle;
       from = half;
     }
+    if (i + 1 == steep && std::abs(high[k] - low[k]) > 0.5 * first)
+      found = Jump{to, low[k], high[k], to - from};
   }
-  if (!(std::abs(high[k] - low[k]) > 0.01 * first)) return std::nullopt;
-  return Jump{to, low[k], high[k]};
+  if (std::abs(high[k] - low[k]) > 0.01 * first) return Jump{to, low[k], high[k], 0};
+  return found;
 }
 
 std::string in_words(const std::string& law, const Jump& jump) {
-  return "at t = " + compact(jump.t, 6) + " s " + law + " jumps from " + compact(jump.from, 3) +
-         " to " + compact(jump.to, 3) +
+  const std::string by = " from " + compact(jump.from, 3) + " to " + compact(jump.to, 3);
+  if (jump.within > 0)
+    return "at t = " + compact(jump.t, 6) + " s " + law + " changes" + by + " within " +
+           compact(jump.within, 2) +
+           " s, in a thousandth of a step; expected one that is less steep, or shorter steps";
+  return "at t = " + compact(jump.t, 6) + " s " + law + " jumps" + by +
          ", at a moment that depends on the motion or on what the derivative is by; expected one "
          "that is continuous, as with tanh in the place of sign";
 }
@@ -227,18 +234,29 @@ std::string LawJumps::of_forces(double t0, double t1, const Motion& motion) {
     evaluation_->joint_forces(q.data(), u.data(), nullptr, nullptr, f.data());
     return f.allFinite();
   };
+  const auto is_input = [&](double t) {
+    return std::find(inputs_.begin(), inputs_.end(), t) != inputs_.end();
+  };
+  // Inputs jump between two times next to each other.
+  if (t1 - t0 <= 1e-9 * std::abs(t1) && is_input(t0) && is_input(t1)) return "";
   VectorXd before, after;
   if (!at(t0, before) || !at(t1, after)) return "";
   const VectorXd change = (after - before).cwiseAbs();
   VectorXd slope = slopes_;
   if (slope.size() == 0) slope = VectorXd::Zero(change.size());
   slopes_ = change / (t1 - t0);
-  const double least = 1e-9 * std::max(before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff());
+  VectorXd p(change.size());
+  evaluation_->momenta(nullptr, p.data());  // a force that matters changes it
+  largest_ = std::max({largest_, before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff(),
+                       p.cwiseAbs().maxCoeff() / std::abs(t1)});
   for (Eigen::Index k = 0; k < change.size(); ++k) {
-    if (!(change[k] > least) || change[k] < 2 * slope[k] * (t1 - t0)) continue;
+    if (!(change[k] > 1e-7 * largest_) || change[k] < 2 * slope[k] * (t1 - t0)) continue;
     const auto jump = jump_in(t0, t1, before, after, k, at);
-    const auto at_input = [&](double t) { return std::abs(t - jump->t) <= 1e-6 * (t1 - t0); };
-    if (jump && std::none_of(inputs_.begin(), inputs_.end(), at_input))
+    const auto at_jump = [&](double t) { return std::abs(t - jump->t) <= 1e-6 * (t1 - t0); };
+    // A corner at the end of a step is steep in a small part of it, and small itself.
+    if (jump && jump->within > 0 && change[k] < 0.01 * largest_) continue;
+    // Nor does a step pass the jump from which the motion starts.
+    if (jump && !at_jump(t0) && std::none_of(inputs_.begin(), inputs_.end(), at_jump))
       return in_words("the force along " + rates_[static_cast<std::size_t>(k)], *jump);
   }
   return "";
@@ -278,7 +296,8 @@ std::string LawJumps::of_laws(double t0, double t1, const Motion& motion) {
     const double first = change(most);
     if (!(first > 1e-9 * largest)) continue;
     if (const auto jump = jump_in(time(static_cast<int>(most)), time(static_cast<int>(most) + 1),
-                                  f[most], f[most + 1], k, at))
+                                  f[most], f[most + 1], k, at);
+        jump && jump->within == 0)
       return in_words(laws_[static_cast<std::size_t>(k)], *jump);
   }
   return "";

@@ -5,10 +5,11 @@
 // a drive may not jump either, nor, on accelerations, its second derivative.
 //
 // A formula is evaluated at nine times in a step. The part with the largest change is halved, then
-// the half that changes more: a continuous force changes less and less. Where energies turn by a
-// corner, bushings by half a turn, or springs by length zero, all forces are evaluated together,
-// at the ends of steps: those that change more than in the step before are halved. Steps shorten
-// at a jump, and what is continuous shrinks with them.
+// the half that changes more: a continuous force changes less and less. Where forces have formulas,
+// which may be too steep for the steps, energies turn by a corner, bushings by half a turn, or
+// springs by length zero, all forces are evaluated together, at the ends of steps: those that
+// change more than in the step before are halved. Steps shorten at a jump, and what is continuous
+// shrinks with them.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/dae/run/event/event_values.h>
@@ -47,6 +48,7 @@ class LawJumps {
   std::unique_ptr<Evaluation<double>> evaluation_;  ///< null: forces jump by formulas alone
   std::vector<std::string> rates_;                  ///< names of u
   Eigen::VectorXd slopes_;                          ///< of the forces in the step before
+  double largest_ = 0;                              ///< force so far
 };
 
 }  // namespace momenta

@@ -251,7 +251,9 @@ void flip_axes(RandomTree& random, Scene& scene) {
 
 void turn_loops_round(RandomTree& random, Scene& scene) {
   for (LoopSpec& l : scene.loops) {
-    if (l.kind == LoopKind::coupler || l.parent == "ground" || driven(scene, l)) continue;
+    if (l.kind == LoopKind::coupler || l.kind == LoopKind::slot || l.parent == "ground" ||
+        driven(scene, l))
+      continue;
     if (!random.chance(0.7)) continue;
     write_out(l);
     std::swap(l.parent, l.child);

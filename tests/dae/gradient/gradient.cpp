@@ -652,7 +652,7 @@ TEST(Gradient, RefusesJumpsOfForcesWithoutAFormula) {
            {pushed(potential + "\"F*max(X.q - 0.2, 0)\"\n"), "X.q", true},
            {pushed(potential + "\"F*sqrt((X.q - 0.2)^2)\"\n"), "X.q", true},
            {pushed(potential + "\"F*max(X.q - 0.2, 0)^2\"\n"), "X.q", false},
-           {pushed(potential + "\"F*max(X.q - 9, 0)\"\n"), "X.q", false},
+           {pushed(potential + "\"F*max(X.q + 9, 0)\"\n"), "X.q", false},
            {by_lagrangian("F*abs(X - 0.2)"), "X", true},
            {by_lagrangian("F*abs(X - 0.2)^3"), "X", false},
            {swung(bushing + "\"F\"\n"), "X.q", true},
@@ -671,6 +671,30 @@ TEST(Gradient, RefusesJumpsOfForcesWithoutAFormula) {
           " jumps from "))
           << text;
   }
+}
+
+/// Continuous forces that change in less than a thousandth of a step, which no tangent follows.
+TEST(Gradient, RefusesForcesTooSteepForItsSteps) {
+  const auto pushed = [](const std::string& law, const std::string& more = "") {
+    return "[parameters]\nF = 3\na = 0.3\n" + slide +
+           "position = 1\nstiffness = 100\ndamping = 0.3\n[[force]]\nkind = "
+           "\"torque\"\njoint = \"X\"\nlaw = \"" +
+           law + "\"\n" + more;
+  };
+  const auto rising = [](const std::string& width) {
+    return "[[function]]\nname = \"f\"\nx = [-1, \"a\", \"a + " + width +
+           "\", 1]\ny = [0, 0, 1, 1]\nkind = \"linear\"\n";
+  };
+  for (const std::string& text : {pushed("F*f(q)", rising("1e-9")), pushed("F*tanh(1e9*(q - a))")})
+    EXPECT_TRUE(equations::says(
+        equations::thrown<SceneError>([&] {
+          gradient(of_text(text), adaptive("X.q", {"F", "a"}, "momentum", 0.7, "dop853", 1e-8));
+        }),
+        "; expected one that is "));
+  expect_runs(pushed("F*tanh(20*(q - a))"), adaptive("X.q", {"F", "a"}, "momentum", 0.7), 1e-5,
+              1e-6);
+  expect_runs(pushed("F*f(q)", rising("0.2")), adaptive("X.q", {"F", "a"}, "momentum", 0.7), 1e-4,
+              1e-4);
 }
 
 /// What nothing moves freely in has gradients of what drives do.

@@ -371,6 +371,7 @@ TEST(Bearings, OfSlidesCarryLoadsAcrossThePlane) {
     };
     EXPECT_TRUE(beside("kind = \"wrench\"\nbody = \"b\"\nforce = [1, 2, 0]\n"));
     EXPECT_FALSE(beside("kind = \"wrench\"\nbody = \"b\"\nforce = [1, 2, 0.1]\n"));
+    EXPECT_TRUE(beside("kind = \"wrench\"\nbody = \"b\"\nforce = [1, 2, 0]\naxes = \"body\"\n"));
     EXPECT_TRUE(beside("kind = \"spring-damper\"\nchild = \"b\"\nstiffness = 3\n"));
     EXPECT_FALSE(
         beside("kind = \"spring-damper\"\nchild = \"b\"\nstiffness = 3\norigin = { "

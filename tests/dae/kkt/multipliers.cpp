@@ -189,7 +189,7 @@ TEST(UniqueMultipliers, OfADrivenScissorIsTheThrust) {
 TEST(UniqueMultipliers, AgreeOnRandomLoopsWrittenTwice) {
   std::mt19937 random(3);
   int compared = 0, mixed = 0;
-  for (int round = 0; round < 150; ++round) {
+  for (int round = 0; round < 320; ++round) {
     std::vector<unsigned char> bytes(200);
     for (auto& b : bytes) b = static_cast<unsigned char>(random());
     Scene scene = sound_scene(bytes, round % 2 == 0);

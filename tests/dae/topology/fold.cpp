@@ -244,6 +244,7 @@ TEST(Fold, LoopsOfWeldedBodiesHoldTheirCarriers) {
   }
   for (const LoopKind kind : loop_kinds) {
     EXPECT_GT(compared[kind], 20) << static_cast<int>(kind);
+    if (kind == LoopKind::slot) continue;  // it has no other way round
     EXPECT_GT(turned[kind], 0) << static_cast<int>(kind);
   }
   EXPECT_GT(stayed, 10);
