@@ -10,6 +10,10 @@ template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 namespace momenta {
 namespace {
 
+/// Largest size at which rotations take little time. They leave apart what the matrix does, also in
+/// null spaces.
+constexpr Eigen::Index most_rotated = 100;
+
 /// Of the matrix with this QR, whose pivots from `rank` on are rounding.
 SingularValues of_regular_part(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
                                Eigen::Index rank) {
@@ -53,7 +57,12 @@ SingularValues::SingularValues(const Eigen::MatrixXd& a, unsigned options) {
     const Eigen::Index most = std::min(a.rows(), a.cols());
     const double none = std::numeric_limits<double>::epsilon() *
                         static_cast<double>(std::max(a.rows(), a.cols())) * pivots[0];
-    if (const Eigen::Index rank = (pivots.array() > none).count(); rank < most) {
+    const Eigen::Index rank = (pivots.array() > none).count();
+    if (rank < most && std::max(a.rows(), a.cols()) <= most_rotated) {
+      take(Eigen::JacobiSVD<Eigen::MatrixXd>(a, options));
+      return;
+    }
+    if (rank < most) {
       *this = of_regular_part(qr, rank);
       if (options & Eigen::ComputeThinU) u = u.leftCols(most).eval();
       if (options & Eigen::ComputeThinV) v = v.leftCols(most).eval();
